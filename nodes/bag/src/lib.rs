@@ -1,0 +1,1 @@
+//! rosbag2 (MCAP) directories, written and read without ROS.

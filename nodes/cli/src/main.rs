@@ -1,0 +1,2 @@
+//! The program `cspace-haptics`.
+fn main() {}

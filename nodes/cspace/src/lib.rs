@@ -1,0 +1,18 @@
+//! Contact tracking in configuration space between convex polyhedra
+//! (Rosell and Vazquez 2004, sections II and III, and the appendix).
+//!
+//! `x` is the position of A's frame and `R` its rotation, both in W. `CO = B (+) (-R A)` is the C-obstacle: the set of
+//! `x` at which A and B touch or overlap at this orientation. A C-face's plane is `f(x) = n.x - d` with `n` unit and
+//! outward; `f < 0` is inside.
+
+mod c_face;
+mod contact;
+mod ids;
+mod polyhedron;
+mod world;
+
+pub use c_face::CFace;
+pub use contact::BasicContact;
+pub use ids::{EdgeId, FaceId, VertexId};
+pub use polyhedron::Polyhedron;
+pub use world::{FixedPart, World};

@@ -1,0 +1,53 @@
+use serde::{Deserialize, Serialize};
+use spatial::{Pose, Stamp, Twist, Wrench};
+
+/// One reading of a device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Sample {
+    /// Counts samples from the device, from 1; 0 means that none has come yet.
+    pub sequence: u64,
+    /// When the device measured it.
+    pub stamp: Stamp,
+    /// Pose of the device's handle in the device's base frame.
+    pub pose: Pose,
+    /// Velocity of the handle, axes of the base frame; zero if `has_twist` is false.
+    pub twist: Twist,
+    /// Whether the device measures velocity; else the servo differentiates.
+    pub has_twist: bool,
+    /// Button mask, bit 0 the first button.
+    pub buttons: u32,
+    /// False while the device is unplugged or its last report was garbage.
+    pub connected: bool,
+}
+
+/// What a device can do; limits the loop.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DeviceSpec {
+    /// Name for messages.
+    pub name: String,
+    /// Half extents of the workspace, metres.
+    pub workspace: spatial::DVec3,
+    /// Greatest force it can show, N; 0 for an input-only device.
+    pub max_force: f64,
+    /// Greatest torque it can show, N.m; 0 for none.
+    pub max_torque: f64,
+    /// Greatest stiffness that its maker states, N/m.
+    pub max_stiffness: f64,
+    /// Position resolution, metres.
+    pub resolution: f64,
+    /// Moving mass felt at the handle, kg.
+    pub mass: f64,
+    /// Damping of its mechanics, N.s/m.
+    pub damping: f64,
+}
+
+/// A device as the servo thread sees it. Neither call blocks, allocates or locks: drivers that must, keep a thread of
+/// their own and speak through latest-value cells.
+pub trait HapticDevice: Send {
+    /// What the device can do.
+    fn spec(&self) -> &DeviceSpec;
+    /// The newest sample at time `now`; the same again if there is no newer one.
+    fn read(&mut self, now: Stamp) -> Sample;
+    /// Shows a wrench on the hand: axes of the base frame, torque about the handle's origin.
+    fn write(&mut self, wrench: &Wrench);
+}

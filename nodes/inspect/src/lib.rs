@@ -1,0 +1,1 @@
+//! TickRecord and scene to rerun.

@@ -1,0 +1,1 @@
+//! Thread set-up, clock, latency histogram, rings and latest-value cells.

@@ -1,0 +1,1 @@
+//! r2r adapters and the ROS 2 executables.

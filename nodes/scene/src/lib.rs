@@ -1,0 +1,1 @@
+//! Meshes and scene.yaml to convex parts; build time only.
