@@ -1,0 +1,58 @@
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Why a command ended with exit code 1: shown as one line, `FILE[:LINE]: reason`.
+#[derive(Debug)]
+pub struct Failure {
+    file: Option<PathBuf>,
+    line: Option<u64>,
+    reason: String,
+}
+
+impl Failure {
+    /// Something wrong with a file as a whole.
+    pub fn file(file: impl AsRef<Path>, reason: impl fmt::Display) -> Self {
+        Self { file: Some(file.as_ref().to_owned()), line: None, reason: reason.to_string() }
+    }
+
+    /// Something wrong in line `line` (from 1) of a file.
+    #[allow(dead_code, reason = "not every feature set reads text files")]
+    pub fn line(file: impl AsRef<Path>, line: u64, reason: impl fmt::Display) -> Self {
+        Self { line: Some(line), ..Self::file(file, reason) }
+    }
+
+    /// A reason that names its file itself, or has none.
+    #[allow(dead_code, reason = "not every feature set needs it")]
+    pub fn plain(reason: impl fmt::Display) -> Self {
+        Self { file: None, line: None, reason: reason.to_string() }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(file) = &self.file {
+            write!(f, "{}", one_line(&file.to_string_lossy()))?;
+            if let Some(line) = self.line {
+                write!(f, ":{line}")?;
+            }
+            f.write_str(": ")?;
+        }
+        f.write_str(&one_line(&self.reason))
+    }
+}
+
+/// Libraries explain themselves over several lines; a script that reads ours wants one.
+fn one_line(text: &str) -> String {
+    text.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failure_is_one_line_with_file_and_line() {
+        assert_eq!(Failure::line("a.csv", 7, "bad\n  number\n").to_string(), "a.csv:7: bad; number");
+        assert_eq!(Failure::file("a.csv", "empty").to_string(), "a.csv: empty");
+    }
+}
