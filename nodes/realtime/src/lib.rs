@@ -1,1 +1,16 @@
-//! Thread set-up, clock, latency histogram, rings and latest-value cells.
+//! Thread set-up, clock, latency histogram, rings and latest-value cells: all that a real-time loop needs from the
+//! system, asked for once at the start, so that the loop itself does nothing but its work and one sleep.
+
+mod cadence;
+mod clock;
+mod histogram;
+mod latest;
+mod ring;
+mod thread_setup;
+
+pub use cadence::{Cadence, Wakeup};
+pub use clock::{RobotClock, monotonic_ns, realtime_ns, sleep_until};
+pub use histogram::{LatencyHistogram, LatencySummary};
+pub use latest::{LatestReader, LatestWriter, latest};
+pub use ring::{RingReader, RingWriter, ring};
+pub use thread_setup::{Grant, GrantReport, ThreadSetup};
