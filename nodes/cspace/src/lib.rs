@@ -14,5 +14,5 @@ mod world;
 pub use c_face::CFace;
 pub use contact::BasicContact;
 pub use ids::{EdgeId, FaceId, VertexId};
-pub use polyhedron::Polyhedron;
+pub use polyhedron::{COPLANAR_TOLERANCE, DENT_TOLERANCE, Edge, Plane, Polyhedron, PolyhedronError};
 pub use world::{FixedPart, World};
