@@ -1,0 +1,69 @@
+//! Environment variables that differ from the caller's.
+
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::fmt::Display;
+use std::path::Path;
+use std::process::Command;
+
+/// The variables to set on top of the inherited environment.
+#[derive(Debug, Clone, Default)]
+pub struct Variables(BTreeMap<String, String>);
+
+impl Variables {
+    /// Sets one variable.
+    pub fn set(&mut self, name: &str, value: impl Display) {
+        self.0.insert(name.to_owned(), value.to_string());
+    }
+
+    /// The value: ours, else the inherited one.
+    pub fn get(&self, name: &str) -> Option<String> {
+        self.0.get(name).cloned().or_else(|| std::env::var(name).ok()).filter(|value| !value.is_empty())
+    }
+
+    /// Puts a folder in front of a colon-separated list, keeping what is there or inherited.
+    pub fn prepend(&mut self, name: &str, folder: &Path) {
+        let value = match self.get(name) {
+            Some(rest) => format!("{}:{rest}", folder.display()),
+            None => folder.display().to_string(),
+        };
+        self.set(name, value);
+    }
+
+    /// Gives the variables to a command.
+    pub fn apply<'c>(&self, command: &'c mut Command) -> &'c mut Command {
+        command.envs(&self.0)
+    }
+
+    /// A command with these variables, found on their `PATH` rather than on ours.
+    pub fn command(&self, program: impl AsRef<OsStr>) -> Command {
+        let mut command = Command::new(program);
+        self.apply(&mut command);
+        command
+    }
+
+    /// As lines for a POSIX shell.
+    pub fn to_shell(&self) -> String {
+        self.0.iter().map(|(name, value)| format!("export {name}='{}'\n", value.replace('\'', r"'\''"))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shell_quotes_survive() {
+        let mut variables = Variables::default();
+        variables.set("A", "it's");
+        assert_eq!(variables.to_shell(), "export A='it'\\''s'\n");
+    }
+
+    #[test]
+    fn prepend_keeps_order() {
+        let mut variables = Variables::default();
+        variables.prepend("CSPACE_TEST_LIST", Path::new("/b"));
+        variables.prepend("CSPACE_TEST_LIST", Path::new("/a"));
+        assert_eq!(variables.get("CSPACE_TEST_LIST").as_deref(), Some("/a:/b"));
+    }
+}
