@@ -82,7 +82,7 @@ impl Step {
             file.write_all(&line)?;
             let text = String::from_utf8_lossy(&line).trim_end().to_owned();
             self.detail(&text);
-            if tail.len() == 25 {
+            if tail.len() == 8 {
                 tail.pop_front();
             }
             tail.push_back(text);

@@ -85,7 +85,7 @@ fn make_venv(
     fs::write(&requirements, lock)?;
     step.run(
         clean(&prefix.join("bin/python"))
-            .args(["-m", "pip", "install", "--disable-pip-version-check", "--only-binary=:all:"])
+            .args(["-m", "pip", "install", "--disable-pip-version-check", "--prefer-binary"])
             .args(options)
             .arg("-r")
             .arg(&requirements),
