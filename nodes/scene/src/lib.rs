@@ -1,5 +1,7 @@
 //! Meshes and scene.yaml to convex parts; build time only.
 
+mod cut;
+mod hull;
 mod mesh;
 mod obj;
 mod stl;
