@@ -1,11 +1,23 @@
 //! Meshes and scene.yaml to convex parts; build time only.
+//!
+//! A scene is read once into a [`Bundle`] of bytes and built from it without touching a file again, so what a bag
+//! carries builds the very same parts.
 
+mod bundle;
 mod cut;
+mod error;
 mod hull;
 mod mesh;
 mod obj;
+mod pieces;
+mod scene;
+mod scene_file;
 mod stl;
+mod urdf;
 
+pub use bundle::Bundle;
+pub use error::SceneError;
 pub use mesh::{Mesh, MeshError};
 pub use obj::parse_obj;
+pub use scene::{Body, Scene};
 pub use stl::parse_stl;
