@@ -1,0 +1,39 @@
+//! ROS 2 node `haptic_recorder`: records topics into a rosbag2 MCAP folder that survives a kill -9.
+
+use cspace_haptics::parameters::ParameterServer;
+use cspace_haptics::recorder::{Recorder, RecorderOptions};
+use cspace_haptics::{Host, Outcome, failure};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+const USAGE: &str = "haptic_recorder: records topics into a rosbag2 MCAP folder.\n\
+    Parameters: output (a new folder), topics, nodes, all, compression, split_size_mb, split_duration, flush_interval.";
+/// After the signal: the messages on their way are waited for, as long as they come, at most this long.
+const LAST_WAIT: Duration = Duration::from_secs(2);
+const QUIET: Duration = Duration::from_millis(150);
+
+fn main() -> ExitCode {
+    failure::run(body)
+}
+
+fn body() -> Outcome<()> {
+    let mut host = Host::start("haptic_recorder", USAGE)?;
+    let mut parameters = ParameterServer::new(&mut host.node, RecorderOptions::declared())?;
+    let namespace = host.node.namespace()?;
+    let mut recorder = Recorder::create(RecorderOptions::from_parameters(&parameters, &namespace)?)?;
+    host.say_ready();
+    while !host.stopped() {
+        recorder.turn(&mut host, Duration::from_millis(20))?;
+        parameters.serve(host.now(), &mut |_| Ok(()))?;
+    }
+    let end = Instant::now();
+    let mut last = end;
+    while end.elapsed() < LAST_WAIT && last.elapsed() < QUIET {
+        if recorder.turn(&mut host, Duration::from_millis(10))? {
+            last = Instant::now();
+        }
+    }
+    let summary = recorder.finish()?;
+    host.say(&summary.to_string());
+    Ok(())
+}

@@ -1,0 +1,186 @@
+use crate::failure::panic_text;
+use crate::{Failure, Outcome};
+use r2r::{Clock, Context, Node};
+use spatial::Stamp;
+use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+/// One node in one process: its name, its clock and the signals that end it.
+///
+/// The thread that owns it calls [`Host::spin_once`] and nothing else blocks; whoever leaves `main` does so after the
+/// host was dropped, for a middleware that is still spinning does not survive the end of the process.
+pub struct Host {
+    /// The node itself.
+    pub node: Node,
+    name: String,
+    clock: Arc<Mutex<Clock>>,
+    stop: Arc<AtomicBool>,
+}
+
+impl Host {
+    /// Starts the middleware with the process's `--ros-args` and makes a node; `name` is what it is called unless
+    /// remapped. `usage` is printed for `--help`, and arguments outside `--ros-args ... [--]` are refused.
+    ///
+    /// # Errors
+    /// Usage, malformed `--ros-args`, an unreadable parameter file, an impossible name or domain.
+    pub fn start(name: &str, usage: &str) -> Outcome<Self> {
+        check_arguments(name, usage, std::env::args().skip(1))?;
+        let stop = Arc::new(AtomicBool::new(false));
+        for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM, signal_hook::consts::SIGHUP] {
+            signal_hook::flag::register(signal, Arc::clone(&stop))
+                .map_err(|e| Failure::new(format!("signal {signal} cannot be caught: {e}")))?;
+        }
+        check_domain(std::env::var("ROS_DOMAIN_ID").ok().as_deref())?;
+        // The middleware's own start panics on arguments it cannot read.
+        let context = quietly(|| std::panic::catch_unwind(Context::create))
+            .map_err(|p| {
+                Failure::usage(format!("ROS: {}; see the README for examples", without_origin(&panic_text(p.as_ref()))))
+            })?
+            .map_err(|e| Failure::new(format!("ROS does not start: {e}; is the environment sourced and HOME set?")))?;
+        let mut node = Node::create(context, name, "").map_err(|e| {
+            Failure::new(format!(
+                "node `{name}` cannot be made: {e}; check its name and namespace, ROS_DOMAIN_ID and RMW_IMPLEMENTATION"
+            ))
+        })?;
+        if matches!(node.get_parameter::<bool>("use_sim_time"), Ok(true)) {
+            let source = node.get_time_source();
+            source.enable_sim_time(&mut node)?;
+        }
+        let name = node.fully_qualified_name()?;
+        let clock = node.get_ros_clock();
+        Ok(Self { node, name, clock, stop })
+    }
+
+    /// The node's name with its namespace, after remapping.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Robot time: the system's clock, or `/clock` if `use_sim_time` is set.
+    #[must_use]
+    pub fn now(&self) -> Stamp {
+        let now = self.clock.lock().ok().and_then(|mut c| c.get_now().ok()).unwrap_or_default();
+        Stamp(i64::try_from(now.as_nanos()).unwrap_or(i64::MAX))
+    }
+
+    /// Handles what has come, or waits up to `timeout` for it: at most one message of each subscription.
+    pub fn spin_once(&mut self, timeout: Duration) {
+        self.node.spin_once(timeout);
+    }
+
+    /// Whether a signal asked the process to end.
+    #[must_use]
+    pub fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// The flag that the signals set, for other threads of the process.
+    #[must_use]
+    pub fn stop_flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stop)
+    }
+
+    /// Says on stdout that the node is up: launchers wait for this line.
+    pub fn say_ready(&self) {
+        println!("ready: {}", self.name);
+        let _ = std::io::stdout().flush();
+    }
+
+    /// Says one line of progress on stdout.
+    pub fn say(&self, line: &str) {
+        println!("{}: {line}", self.name);
+        let _ = std::io::stdout().flush();
+    }
+
+    /// Says one line of warning on stderr.
+    pub fn warn(&self, line: &str) {
+        eprintln!("warning: {}: {line}", self.name);
+    }
+}
+
+/// Refuses whatever stands outside `--ros-args ... [--]`.
+fn check_arguments(name: &str, usage: &str, args: impl Iterator<Item = String>) -> Outcome<()> {
+    let mut inside = false;
+    for arg in args {
+        match (inside, arg.as_str()) {
+            (false, "--ros-args") => inside = true,
+            (true, "--") => inside = false,
+            (true, _) => {}
+            (false, "-h" | "--help") => {
+                println!(
+                    "{usage}\n\nusage: {name} [--ros-args [-p NAME:=VALUE]... [--params-file FILE]... [-r FROM:=TO]...]"
+                );
+                std::process::exit(0);
+            }
+            (false, other) => {
+                return Err(Failure::usage(format!(
+                    "unknown argument `{other}`; usage: {name} [--ros-args -p NAME:=VALUE --params-file FILE -r FROM:=TO]"
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Runs `start` with stderr closed: what the middleware says there in several lines stands in its error too, and comes
+/// out as the one line that launchers and people look for.
+fn quietly<T>(start: impl FnOnce() -> T) -> T {
+    let saved = rustix::io::dup(std::io::stderr()).ok();
+    let nowhere = std::fs::OpenOptions::new().write(true).open("/dev/null");
+    if let (Some(_), Ok(nowhere)) = (&saved, nowhere) {
+        let _ = rustix::stdio::dup2_stderr(nowhere);
+    }
+    let outcome = start();
+    if let Some(saved) = saved {
+        let _ = rustix::stdio::dup2_stderr(saved);
+    }
+    outcome
+}
+
+/// Domains beyond 232 have no ports.
+fn check_domain(id: Option<&str>) -> Outcome<()> {
+    match id.map(str::trim).filter(|s| !s.is_empty()).map(str::parse::<u32>) {
+        None | Some(Ok(0..=232)) => Ok(()),
+        Some(_) => {
+            Err(Failure::new(format!("ROS_DOMAIN_ID = `{}` is not a number from 0 to 232", id.unwrap_or_default())))
+        }
+    }
+}
+
+/// The middleware's text without the place in its own sources.
+fn without_origin(text: &str) -> String {
+    text.split(", at ").next().unwrap_or(text).trim_end_matches(['.', ' ']).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(args: &[&str]) -> Outcome<()> {
+        check_arguments("node", "", args.iter().map(|s| (*s).to_owned()))
+    }
+
+    #[test]
+    fn only_ros_arguments_are_taken() {
+        assert!(check(&[]).is_ok());
+        assert!(check(&["--ros-args", "-p", "a:=1", "--"]).is_ok());
+        assert_eq!(check(&["scene.yaml"]).unwrap_err().code(), 2);
+        assert_eq!(check(&["--ros-args", "-p", "a:=1", "--", "--verbose"]).unwrap_err().code(), 2);
+    }
+
+    #[test]
+    fn a_domain_has_ports() {
+        assert!(check_domain(None).is_ok() && check_domain(Some("0")).is_ok() && check_domain(Some("232")).is_ok());
+        for bad in ["233", "-1", "abc", "1.5"] {
+            assert!(check_domain(Some(bad)).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn the_place_in_foreign_sources_is_left_out() {
+        assert_eq!(without_origin("Couldn't parse 'x', at ./src/rcl/arguments.c:343"), "Couldn't parse 'x'");
+    }
+}

@@ -1,0 +1,157 @@
+use super::Batcher;
+use crate::convert::MarkerPainter;
+use crate::{Outcome, Talker, qos};
+use bag::msg;
+use cspace::World;
+use r2r::visualization_msgs::msg::MarkerArray;
+use r2r::{Node, Publisher, QosProfile};
+use servo::TickRecord;
+use spatial::{Pose, Stamp, Wrench};
+
+/// The frames' names: the world W and the manipulated part A.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frames {
+    /// W.
+    pub world: String,
+    /// A.
+    pub part: String,
+}
+
+/// What the servo publishes of its ticks.
+pub struct ServoTopics {
+    frames: Frames,
+    pose: Talker<msg::PoseStamped>,
+    proxy_pose: Talker<msg::PoseStamped>,
+    wrench: Talker<msg::WrenchStamped>,
+    ticks: Talker<msg::TickBatch>,
+    markers: Publisher<MarkerArray>,
+    painter: MarkerPainter,
+    batcher: Batcher,
+    poses_due: Due,
+    markers_due: Due,
+    standing_due: Due,
+}
+
+impl ServoTopics {
+    /// Offers the topics; poses and wrenches go out `publish_rate` times a second.
+    ///
+    /// # Errors
+    /// The middleware refuses a topic.
+    pub fn new(node: &mut Node, frames: Frames, world: &World, publish_rate: f64, tick_rate: f64) -> Outcome<Self> {
+        Ok(Self {
+            pose: Talker::new(node, "~/pose", qos::sensor())?,
+            proxy_pose: Talker::new(node, "~/proxy_pose", qos::sensor())?,
+            wrench: Talker::new(node, "~/wrench", qos::sensor())?,
+            ticks: Talker::new(node, "~/ticks", qos::every_tick())?,
+            markers: node.create_publisher("~/markers", QosProfile::default())?,
+            painter: MarkerPainter::new(world, &frames.world),
+            batcher: Batcher::new(&frames.world, &frames.part, (tick_rate / 100.0).ceil() as usize),
+            poses_due: Due::every(1.0 / publish_rate),
+            markers_due: Due::every(1.0 / 20.0),
+            standing_due: Due::every(1.0),
+            frames,
+        })
+    }
+
+    /// Publishes what a tick gives rise to.
+    ///
+    /// # Errors
+    /// The middleware refuses a message.
+    pub fn tick(&mut self, tick: &TickRecord, lost: u64) -> Outcome<()> {
+        let at = tick.input.stamp;
+        if self.poses_due.at(at) {
+            self.pose.say(&self.pose_message(at, &tick.hip))?;
+            self.proxy_pose.say(&self.pose_message(at, &tick.proxy))?;
+            self.wrench.say(&self.wrench_message(at, &tick.out_wrench))?;
+        }
+        if self.batcher.add(tick, lost) {
+            self.flush()?;
+        }
+        if self.markers_due.at(at) && self.markers.get_inter_process_subscription_count().unwrap_or(0) > 0 {
+            self.markers.publish(&self.painter.moving(tick))?;
+            if self.standing_due.at(at) {
+                self.markers.publish(&self.painter.standing(at))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Sends the ticks that wait for company.
+    ///
+    /// # Errors
+    /// The middleware refuses the message.
+    pub fn flush(&mut self) -> Outcome<()> {
+        if let Some(batch) = self.batcher.batch() {
+            self.ticks.say(batch)?;
+        }
+        self.batcher.clear();
+        Ok(())
+    }
+
+    /// The last word on the wrench topic: no force.
+    ///
+    /// # Errors
+    /// The middleware refuses the message.
+    pub fn say_no_force(&self, at: Stamp) -> Outcome<()> {
+        self.wrench.say(&self.wrench_message(at, &Wrench::ZERO))
+    }
+
+    fn header(&self, at: Stamp) -> msg::Header {
+        msg::Header { stamp: at.into(), frame_id: self.frames.world.clone() }
+    }
+
+    fn pose_message(&self, at: Stamp, pose: &Pose) -> msg::PoseStamped {
+        msg::PoseStamped { header: self.header(at), pose: (*pose).into() }
+    }
+
+    fn wrench_message(&self, at: Stamp, wrench: &Wrench) -> msg::WrenchStamped {
+        msg::WrenchStamped { header: self.header(at), wrench: (*wrench).into() }
+    }
+}
+
+/// Says yes once in each period of robot time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Due {
+    period_ns: i64,
+    next: Option<Stamp>,
+}
+
+impl Due {
+    pub(crate) fn every(seconds: f64) -> Self {
+        Self { period_ns: (seconds * 1e9).max(1.0) as i64, next: None }
+    }
+
+    /// Whether it is time; a clock that went back, or ahead by more than a period, begins a new grid.
+    pub(crate) fn at(&mut self, now: Stamp) -> bool {
+        let next = self.next.unwrap_or(now);
+        if now < next && next.0 - now.0 <= self.period_ns {
+            return false;
+        }
+        let on_grid = next.0 + self.period_ns;
+        let fresh = now.0 + self.period_ns;
+        self.next = Some(Stamp(if on_grid > now.0 && on_grid <= fresh { on_grid } else { fresh }));
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn due_keeps_its_rate_on_a_grid_that_does_not_divide_it() {
+        let mut due = Due::every(1.0 / 300.0);
+        let said = (0..3000).filter(|ms| due.at(Stamp(ms * 1_000_000))).count();
+        assert!((899..=901).contains(&said), "{said} in 3 s at 300 Hz");
+    }
+
+    #[test]
+    fn due_survives_a_clock_that_steps() {
+        let mut due = Due::every(0.01);
+        assert!(due.at(Stamp(5_000_000_000)));
+        assert!(due.at(Stamp(1_000_000_000)), "back");
+        assert!(!due.at(Stamp(1_001_000_000)));
+        assert!(due.at(Stamp(9_000_000_000)), "ahead");
+        assert!(!due.at(Stamp(9_000_000_001)));
+    }
+}
