@@ -44,6 +44,12 @@ impl Cadence {
         self.period_ns
     }
 
+    /// The next moment of the grid, monotonic ns.
+    #[must_use]
+    pub const fn next_ns(&self) -> i64 {
+        self.next_ns
+    }
+
     /// Sleeps until the next moment of the grid.
     pub fn wait(&mut self) -> Wakeup {
         sleep_until(self.next_ns);

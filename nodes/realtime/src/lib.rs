@@ -12,5 +12,5 @@ pub use cadence::{Cadence, Wakeup};
 pub use clock::{RobotClock, monotonic_ns, realtime_ns, sleep_until};
 pub use histogram::{LatencyHistogram, LatencySummary};
 pub use latest::{LatestReader, LatestWriter, latest};
-pub use ring::{RingReader, RingWriter, ring};
+pub use ring::{RingReader, RingWriter, ring, ring_prefaulted};
 pub use thread_setup::{Grant, GrantReport, ThreadSetup};

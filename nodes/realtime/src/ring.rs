@@ -9,6 +9,15 @@ pub fn ring<T: Send>(capacity: usize) -> (RingWriter<T>, RingReader<T>) {
     (RingWriter { producer, dropped: Arc::clone(&dropped) }, RingReader { consumer, dropped })
 }
 
+/// A [`ring`] whose memory was written once, with copies of `filler`, so that the real-time side faults no page in later.
+#[must_use]
+pub fn ring_prefaulted<T: Send + Clone>(capacity: usize, filler: &T) -> (RingWriter<T>, RingReader<T>) {
+    let (mut writer, mut reader) = ring(capacity);
+    while writer.producer.push(filler.clone()).is_ok() {}
+    while reader.pop().is_some() {}
+    (writer, reader)
+}
+
 /// The writing end of [`ring`].
 #[derive(Debug)]
 pub struct RingWriter<T> {

@@ -1,7 +1,14 @@
 //! One tick as a pure function, TickRecord, the loop, configuration.
 
+mod commands;
 mod health;
+mod loop_status;
 mod record;
+mod servo_handle;
+mod servo_loop;
 
+pub use commands::Commands;
 pub use health::Health;
+pub use loop_status::LoopStatus;
 pub use record::{TickInput, TickRecord};
+pub use servo_handle::{LoopConfig, LoopError, Servo, ServoHandle, spawn};

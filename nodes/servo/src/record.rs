@@ -5,7 +5,7 @@ use spatial::{Pose, Stamp, Twist, Wrench};
 
 /// All that a tick depends on besides its state: the tick is a pure function of (state, input), so a recorded input
 /// renders the same bytes again.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TickInput {
     /// Counts ticks from 0, without a gap.
     pub sequence: u64,
@@ -59,4 +59,24 @@ pub struct TickRecord {
 impl TickRecord {
     /// Layout version of the record in bags and messages.
     pub const VERSION: u16 = 1;
+}
+
+impl Default for TickRecord {
+    /// A record of nothing: no sample, no contact, no force.
+    fn default() -> Self {
+        Self {
+            input: TickInput::default(),
+            hip: Pose::IDENTITY,
+            twist: Twist::ZERO,
+            proxy: Pose::IDENTITY,
+            depth: 0.0,
+            formation: ContactFormation::FREE,
+            law_wrench: Wrench::ZERO,
+            out_wrench: Wrench::ZERO,
+            energy: 0.0,
+            health: Health::GOOD,
+            wakeup_ns: 0,
+            compute_ns: 0,
+        }
+    }
 }
