@@ -5,14 +5,23 @@
 //! `x` at which A and B touch or overlap at this orientation. A C-face's plane is `f(x) = n.x - d` with `n` unit and
 //! outward; `f < 0` is inside.
 
+mod audit;
+mod body;
 mod c_face;
+mod certificate;
 mod contact;
+mod graph;
 mod ids;
 mod polyhedron;
+mod tracker;
+mod walk;
 mod world;
 
-pub use c_face::CFace;
+pub(crate) use body::Body;
+pub use c_face::{CFace, applicable_c_faces, contact_point, is_applicable};
 pub use contact::BasicContact;
+pub use graph::ContactGraph;
 pub use ids::{EdgeId, FaceId, VertexId};
 pub use polyhedron::{COPLANAR_TOLERANCE, DENT_TOLERANCE, Edge, Plane, Polyhedron, PolyhedronError};
+pub use tracker::{Tracked, Tracker};
 pub use world::{FixedPart, World};
