@@ -7,6 +7,8 @@
 
 mod audit;
 mod body;
+mod body_tracker;
+mod bvh;
 mod c_face;
 mod certificate;
 mod contact;
@@ -18,6 +20,7 @@ mod walk;
 mod world;
 
 pub(crate) use body::Body;
+pub use body_tracker::{ActivePair, BodyTracker, MAX_NEAR_PIECES};
 pub use c_face::{CFace, applicable_c_faces, contact_point, is_applicable};
 pub use contact::BasicContact;
 pub use graph::ContactGraph;

@@ -64,6 +64,10 @@ impl PairState {
         self.seeded = false;
     }
 
+    pub(crate) fn is_seeded(&self) -> bool {
+        self.seeded
+    }
+
     pub(crate) fn near(&self) -> BasicContact {
         self.near
     }
