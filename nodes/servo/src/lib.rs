@@ -1,6 +1,7 @@
 //! One tick as a pure function, TickRecord, the loop, configuration.
 
 mod commands;
+pub mod config;
 mod health;
 mod loop_status;
 mod record;
@@ -8,6 +9,7 @@ mod servo_handle;
 mod servo_loop;
 
 pub use commands::Commands;
+pub use config::Config;
 pub use health::Health;
 pub use loop_status::LoopStatus;
 pub use record::{TickInput, TickRecord};

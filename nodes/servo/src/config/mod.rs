@@ -1,0 +1,86 @@
+//! Configuration: parameters as a schema in one place, parsed once into checked types.
+
+mod document;
+mod param;
+mod schema;
+mod tree;
+mod values;
+
+pub use document::{markdown_table, yaml_template};
+pub use param::{ParamError, ParamSpec, Range, Value};
+pub use schema::schema;
+use tree::Tree;
+pub use values::{
+    Config, DeviceConfig, Driver, JumpConfig, MappingConfig, PassivityConfig, RealtimeConfig, StabilityConfig,
+    StabilityPolicy,
+};
+
+impl Config {
+    /// Reads a ROS 2 parameter file: `NODE: {ros__parameters: {...}}` of any node name, applied in order, or the bare
+    /// tree of parameters. What it does not name keeps its default.
+    ///
+    /// # Errors
+    /// The first parameter that is unknown, of the wrong type or out of range, or why the text is no parameter file.
+    pub fn from_yaml(yaml: &str) -> Result<Self, ParamError> {
+        let mut options = serde_saphyr::Options::default();
+        options.with_snippet = false;
+        let tree: Tree = serde_saphyr::from_str_with_options(yaml, options)
+            .map_err(|e| ParamError::Syntax(format!("not a parameter file: {e}")))?;
+        let mut config = Self::default();
+        let mut set = |name: &str, value: &Value| config.set(name, value);
+        let Tree::Node(branches) = &tree else {
+            return Err(ParamError::Syntax("not a parameter file: need a map".into()));
+        };
+        let mut parameters = Vec::new();
+        for (_, branch) in branches {
+            if let Tree::Node(inner) = branch {
+                parameters.extend(inner.iter().filter(|(key, _)| key == "ros__parameters").map(|(_, tree)| tree));
+            }
+        }
+        if parameters.is_empty() {
+            tree.walk("", &mut set)?;
+        }
+        parameters.into_iter().try_for_each(|p| p.walk("", &mut set))?;
+        Ok(config)
+    }
+
+    /// Sets one parameter, if the value is allowed.
+    ///
+    /// # Errors
+    /// Unknown name, wrong type, out of range, NaN; nothing is changed then.
+    pub fn set(&mut self, name: &str, value: &Value) -> Result<(), ParamError> {
+        let spec = spec(name)?;
+        let value = spec.check(value)?;
+        (spec.set)(self, &value);
+        Ok(())
+    }
+
+    /// The value of one parameter.
+    ///
+    /// # Errors
+    /// Unknown name.
+    pub fn get(&self, name: &str) -> Result<Value, ParamError> {
+        Ok((spec(name)?.get)(self))
+    }
+
+    /// All parameters as a ROS 2 parameter file that reads back to the same configuration: what a bag carries.
+    #[must_use]
+    pub fn to_yaml(&self) -> String {
+        document::yaml(self, false)
+    }
+}
+
+/// The parameter of that name.
+///
+/// # Errors
+/// There is none; the error names the nearest one.
+pub fn spec(name: &str) -> Result<&'static ParamSpec, ParamError> {
+    schema().iter().find(|s| s.name == name).ok_or_else(|| {
+        let last = |n: &str| n.rsplit('.').next().unwrap_or_default().to_owned();
+        let suggestion = schema().iter().map(|s| s.name).find(|s| last(s) == last(name));
+        ParamError::Unknown { name: name.into(), suggestion }
+    })
+}
+
+#[cfg(test)]
+mod tests;
