@@ -1,5 +1,7 @@
 use crate::failure::Failure;
-use std::path::PathBuf;
+use crate::stdout::say;
+use bag::BagInfo;
+use std::path::{Path, PathBuf};
 
 /// `bag`: what a bag holds, and its contact states.
 #[derive(clap::Args)]
@@ -28,7 +30,53 @@ enum Command {
 /// Runs `bag`.
 pub fn run(args: &Args) -> Result<(), Failure> {
     match &args.command {
-        Command::Info { dir } => Err(Failure::file(dir, "not available yet")),
+        Command::Info { dir } => info(dir),
         Command::Segment { out, .. } => Err(Failure::file(out, "not available yet")),
     }
+}
+
+fn info(dir: &Path) -> Result<(), Failure> {
+    let info = BagInfo::read(dir).map_err(Failure::plain)?;
+    say(&format!("bag       {}", dir.display()))?;
+    for (name, bytes) in &info.files {
+        say(&format!("file      {name}, {:.3} MB", *bytes as f64 * 1e-6))?;
+    }
+    let messages = info.messages();
+    if let Some((first, last)) = info.times {
+        let seconds = (last.0 - first.0) as f64 * 1e-9;
+        say(&format!("duration  {seconds:.3} s, from {:.3} to {:.3}", first.as_secs_f64(), last.as_secs_f64()))?;
+    }
+    if !info.ros_distro.is_empty() {
+        say(&format!("recorded  on ROS 2 {}", info.ros_distro))?;
+    }
+    say(&format!("messages  {messages}"))?;
+    for (topic, count) in &info.topics {
+        let kind = if topic.type_name.is_empty() { "type lost" } else { &topic.type_name };
+        say(&format!("topic     {}, {kind}, {count}", topic.name))?;
+    }
+    for (topic, ticks) in &info.ticks {
+        say(&format!("ticks     {topic}, {} found, {} missing, {} lost", ticks.found, ticks.missing, ticks.lost))?;
+    }
+    for (name, hash, fits) in &info.scenes {
+        say(&format!("scene     {name}, sha256 {hash}{}", if *fits { "" } else { ", DOES NOT FIT" }))?;
+    }
+    for (version, hash) in &info.configurations {
+        say(&format!("config    of cspace_haptics {version}, sha256 {hash}"))?;
+    }
+    for damage in &info.damage {
+        say(&format!("damage    {} at byte {}, {} bytes: {}", damage.file, damage.offset, damage.length, damage.what))?;
+    }
+    if info.undecodable > 0 {
+        say(&format!("damage    {} messages could not be decoded", info.undecodable))?;
+    }
+    match info.promised_messages {
+        None if dir.is_dir() => {
+            say("note      metadata.yaml is missing or damaged; `ros2 bag reindex` makes a new one")?
+        }
+        Some(promised) if promised != messages => {
+            say(&format!("note      metadata.yaml promises {promised} messages, {messages} are there"))?;
+        }
+        _ => {}
+    }
+    say(if info.complete { "complete  yes" } else { "complete  no: its writer was stopped, or it is damaged" })
 }

@@ -1,7 +1,7 @@
 //! Ticks for the tests: a run that touches every field.
 #![allow(dead_code, reason = "each test takes what it needs")]
 
-use bag::msg::{Header, SceneDescription, SceneFile, ServoConfiguration};
+use bag::msg::{SceneDescription, ServoConfiguration};
 use cspace::BasicContact;
 use haptics::{ContactPoint, FormationKind, LawKind};
 use rand::{Rng, RngExt, SeedableRng};
@@ -84,23 +84,10 @@ fn tick(sequence: u64, rng: &mut impl Rng) -> TickRecord {
 
 /// A scene with one mesh.
 pub fn scene() -> SceneDescription {
-    SceneDescription {
-        header: Header { frame_id: "world".into(), ..Header::default() },
-        name: "peg_in_hole".into(),
-        sha256: "0".repeat(64),
-        yaml: "name: peg_in_hole\n".into(),
-        files: vec![SceneFile { path: "peg.obj".into(), data: b"v 0 0 0\n".to_vec() }],
-    }
+    SceneDescription::new("peg_in_hole", "world", "name: peg_in_hole\n", [("peg.obj", *b"v 0 0 0\n")])
 }
 
 /// A configuration.
 pub fn configuration() -> ServoConfiguration {
-    ServoConfiguration {
-        header: Header { frame_id: "world".into(), ..Header::default() },
-        scene: "peg_in_hole".into(),
-        sha256: "1".repeat(64),
-        yaml: "law: proxy\n".into(),
-        version: "0.1.0".into(),
-        record_version: TickRecord::VERSION,
-    }
+    ServoConfiguration::new("peg_in_hole", "world", "law: proxy\n")
 }
