@@ -5,16 +5,28 @@
 //! `x` at which A and B touch or overlap at this orientation. A C-face's plane is `f(x) = n.x - d` with `n` unit and
 //! outward; `f < 0` is inside.
 
+mod audit;
+mod body;
+mod body_tracker;
+mod bvh;
 mod c_face;
 mod c_face_polygon;
+mod certificate;
 mod contact;
+mod graph;
 mod ids;
 mod polyhedron;
+mod tracker;
+mod walk;
 mod world;
 
-pub use c_face::CFace;
+pub(crate) use body::Body;
+pub use body_tracker::{ActivePair, BodyTracker, MAX_NEAR_PIECES};
+pub use c_face::{CFace, applicable_c_faces, contact_point, is_applicable};
 pub use c_face_polygon::{CFacePolygon, c_face_polygons};
 pub use contact::BasicContact;
+pub use graph::ContactGraph;
 pub use ids::{EdgeId, FaceId, VertexId};
 pub use polyhedron::{COPLANAR_TOLERANCE, DENT_TOLERANCE, Edge, Plane, Polyhedron, PolyhedronError};
+pub use tracker::{Tracked, Tracker};
 pub use world::{FixedPart, World};

@@ -1,0 +1,189 @@
+use crate::audit::AuditScratch;
+use crate::bvh::{Aabb, Bvh};
+use crate::tracker::PairState;
+use crate::{Body, Tracked, World};
+use spatial::{DVec3, Pose};
+use std::sync::Arc;
+
+/// Most obstacle pieces that one moving part keeps in view at a time.
+pub const MAX_NEAR_PIECES: usize = 4096;
+
+/// A pair nearer than the margin, and what its tracker says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ActivePair {
+    /// Index into [`World::moving`].
+    pub part: u32,
+    /// Index into [`World::fixed`].
+    pub piece: u32,
+    /// The pair's state in this tick.
+    pub tracked: Tracked,
+}
+
+/// A piece in view of a part.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    piece: u32,
+    state: PairState,
+    /// The part's odometer up to which the pair is known to stay beyond the margin.
+    rest_until: f64,
+}
+
+/// One convex part of A and the pieces in its view.
+#[derive(Debug)]
+struct Part {
+    body: Body,
+    seen: Vec<Seen>,
+    old: Vec<Seen>,
+    /// Length of the way that no point of the part can have exceeded, metres.
+    odometer: f64,
+    /// Odometer at which the view is out of date.
+    view_until: f64,
+    last: Option<Pose>,
+}
+
+/// Tracks a manipulated body of several convex parts against many obstacle pieces.
+///
+/// A tree over the pieces gives each part its view, with room for some motion, so that it is asked only now and then.
+/// A pair in view but clearly apart rests until the body has moved by its clearance. Pairs come and go inside
+/// preallocated room: nothing is allocated in a step.
+#[derive(Debug)]
+pub struct BodyTracker {
+    world: Arc<World>,
+    parts: Vec<Part>,
+    pieces: Vec<Body>,
+    tree: Bvh,
+    margin: f64,
+    scratch: AuditScratch,
+    active: Vec<ActivePair>,
+    overflow: u32,
+}
+
+impl BodyTracker {
+    /// A tracker of the whole world; pairs whose distance is up to `margin` metres (`>= 0`) are reported.
+    #[must_use]
+    pub fn new(world: Arc<World>, margin: f64) -> Self {
+        let room = world.fixed.len().min(MAX_NEAR_PIECES);
+        let parts = world
+            .moving
+            .iter()
+            .map(|p| Part {
+                body: Body::new(p, true),
+                seen: Vec::with_capacity(room),
+                old: Vec::with_capacity(room),
+                odometer: 0.0,
+                view_until: f64::NEG_INFINITY,
+                last: None,
+            })
+            .collect::<Vec<_>>();
+        let boxes =
+            world.fixed.iter().map(|f| Aabb::of(f.polyhedron.corner_ids().map(|v| f.polyhedron.vertex(v)))).collect();
+        Self {
+            pieces: world.fixed.iter().map(|f| Body::new(&f.polyhedron, false)).collect(),
+            tree: Bvh::new(boxes),
+            active: Vec::with_capacity(room * parts.len()),
+            margin: if margin > 0.0 { margin } else { 0.0 },
+            scratch: AuditScratch::new(),
+            overflow: 0,
+            parts,
+            world,
+        }
+    }
+
+    /// What is tracked.
+    #[must_use]
+    pub fn world(&self) -> &Arc<World> {
+        &self.world
+    }
+
+    /// Forgets the past: every pair is seeded anew when it next comes near.
+    pub fn reset(&mut self) {
+        for part in &mut self.parts {
+            part.seen.clear();
+            part.view_until = f64::NEG_INFINITY;
+            part.last = None;
+        }
+    }
+
+    /// Pieces that found no room in a part's view at the last look; their contacts are missed.
+    #[must_use]
+    pub fn overflow(&self) -> u32 {
+        self.overflow
+    }
+
+    /// The pairs of the last step.
+    #[must_use]
+    pub fn active(&self) -> &[ActivePair] {
+        &self.active
+    }
+
+    /// Follows A to `pose` (A in W): the pairs within the margin, ordered by part and piece. A pair that comes into
+    /// view while it is free does not count as reseeded. A pose that is not finite leaves everything as it was.
+    pub fn step(&mut self, pose: &Pose) -> &[ActivePair] {
+        if !(pose.translation.is_finite() && pose.rotation.is_finite()) {
+            return &self.active;
+        }
+        self.active.clear();
+        let Self { parts, pieces, tree, margin, scratch, active, overflow, .. } = self;
+        *overflow = 0;
+        for (index, part) in parts.iter_mut().enumerate() {
+            part.look(tree, pose, *margin, overflow);
+            for seen in &mut part.seen {
+                if part.odometer < seen.rest_until {
+                    continue;
+                }
+                let fresh = !seen.state.is_seeded();
+                let mut tracked = seen.state.step(&part.body, &pieces[seen.piece as usize], scratch, pose);
+                tracked.reseeded &= !(fresh && tracked.is_free());
+                seen.rest_until = part.odometer + (tracked.distance - *margin);
+                if tracked.distance <= *margin {
+                    active.push(ActivePair { part: index as u32, piece: seen.piece, tracked });
+                }
+            }
+        }
+        &self.active
+    }
+}
+
+impl Part {
+    /// Counts the way, and looks around when the view is out of date.
+    fn look(&mut self, tree: &Bvh, pose: &Pose, margin: f64, overflow: &mut u32) {
+        let center = pose.transform_point(self.body.center);
+        let moved = self.last.map_or(f64::INFINITY, |last| {
+            let turn = 2.1 * self.body.radius * (pose.rotation - last.rotation).length();
+            (center - last.transform_point(self.body.center)).length() + turn
+        });
+        self.last = Some(*pose);
+        if moved.is_finite() {
+            self.odometer += moved;
+        }
+        if moved.is_finite() && self.odometer < self.view_until {
+            return;
+        }
+        // Room for a hundred ticks at this speed, within reason.
+        let r = self.body.radius;
+        let room = if moved.is_finite() { (100.0 * moved).clamp(0.05 * r, 0.5 * r) } else { 0.1 * r };
+        self.view_until = self.odometer + room;
+        std::mem::swap(&mut self.seen, &mut self.old);
+        self.seen.clear();
+        tree_into(tree, center, r + margin + room, &mut self.seen, overflow);
+        self.seen.sort_unstable_by_key(|s| s.piece);
+        // Pairs that were in view keep their state; both lists are sorted.
+        let mut old = self.old.iter().peekable();
+        for seen in &mut self.seen {
+            while old.next_if(|o| o.piece < seen.piece).is_some() {}
+            if let Some(o) = old.next_if(|o| o.piece == seen.piece) {
+                *seen = *o;
+            }
+        }
+    }
+}
+
+fn tree_into(tree: &Bvh, center: DVec3, radius: f64, seen: &mut Vec<Seen>, overflow: &mut u32) {
+    tree.query(center, radius, |piece| {
+        if seen.len() < seen.capacity() {
+            seen.push(Seen { piece, state: PairState::NEW, rest_until: f64::NEG_INFINITY });
+        } else {
+            *overflow += 1;
+        }
+    });
+}

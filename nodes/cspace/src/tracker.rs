@@ -1,0 +1,280 @@
+use crate::audit::{AuditScratch, Verdict, audit};
+use crate::certificate::{Certificate, inscribed_ball_proves};
+use crate::walk::{Found, Placed};
+use crate::{BasicContact, Body, CFace, Polyhedron};
+use spatial::{DVec3, Pose};
+use std::sync::Arc;
+
+/// Moves one walk may make in a step; a global seed may cross the whole C-obstacle.
+const STEP_MOVES: u32 = 512;
+/// Poses put between two samples that lie far apart.
+const MAX_SUBSTEPS: u32 = 8;
+/// Nearer planes that one step follows up.
+const MAX_RIVALS: u32 = 6;
+
+/// What a step of the tracker says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tracked {
+    /// The tracked C-face: the one with the largest signed distance among itself and its neighbours, kept continuously
+    /// so that it is on the side by which A came in.
+    pub near: CFace,
+    /// Penetration to Near's plane, metres, `>= 0`; 0 when free.
+    pub depth: f64,
+    /// Signed distance of `x` to Near's plane, metres: `> 0` proves freedom, `<= 0` is contact. When free it is a lower
+    /// bound of the distance between the bodies.
+    pub distance: f64,
+    /// In contact, and some other plane is nearer than Near's, or that could not be excluded within the step's budget.
+    pub divergent: bool,
+    /// Near was not reached continuously: a global seed, a jump too long to follow, or the release after a pass
+    /// through the whole obstacle.
+    pub reseeded: bool,
+    /// Planes and supports looked at in this step.
+    pub planes: u32,
+}
+
+impl Tracked {
+    /// Whether no contact takes place.
+    #[must_use]
+    pub fn is_free(&self) -> bool {
+        self.distance > 0.0
+    }
+}
+
+/// The walking state of one pair: small and `Copy`, so that pools of pairs cost nothing to make.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PairState {
+    near: BasicContact,
+    /// The globally nearest C-face when it is not the tracked one.
+    rival: Option<BasicContact>,
+    certificate: Certificate,
+    last: Pose,
+    seeded: bool,
+}
+
+impl PairState {
+    pub(crate) const NEW: Self = Self {
+        near: crate::c_face::type_b(0, 0),
+        rival: None,
+        certificate: Certificate::NONE,
+        last: Pose::IDENTITY,
+        seeded: false,
+    };
+
+    pub(crate) fn forget(&mut self) {
+        self.seeded = false;
+    }
+
+    pub(crate) fn is_seeded(&self) -> bool {
+        self.seeded
+    }
+
+    pub(crate) fn near(&self) -> BasicContact {
+        self.near
+    }
+
+    /// One step: see [`Tracker::step`].
+    #[inline]
+    pub(crate) fn step(&mut self, a: &Body, b: &Body, scratch: &mut AuditScratch, pose: &Pose) -> Tracked {
+        let placed = Placed::new(a, b, pose);
+        let mut planes = 0;
+        let mut reseeded = false;
+        if self.seeded {
+            let travel = placed.r * a.center + placed.x - self.last.transform_point(a.center);
+            let turn = 2.1 * a.radius * (pose.rotation - self.last.rotation).length();
+            let limit = 0.5 * (a.inner_radius + b.inner_radius);
+            if travel.length_squared() + turn * turn > limit * limit {
+                reseeded = self.follow_jump(a, b, pose, limit, &mut planes);
+            }
+        }
+        let mut near = if self.seeded {
+            placed.settle(self.near, STEP_MOVES, &mut planes)
+        } else {
+            reseeded = true;
+            self.seed(&placed, pose, scratch, &mut planes)
+        };
+        if !near.settled {
+            reseeded = true;
+            near = self.seed(&placed, pose, scratch, &mut planes);
+        }
+        let mut divergent = false;
+        if near.face.distance > 0.0 {
+            self.rival = None;
+        } else if self.rival.is_some()
+            || !(inscribed_ball_proves(&placed, &near) || self.certificate.holds(&placed, pose, &near))
+        {
+            (near, divergent) = self.examine(&placed, pose, near, scratch, &mut reseeded, &mut planes);
+        }
+        self.near = near.face.contact;
+        self.last = *pose;
+        let distance = near.face.distance;
+        Tracked { near: near.face, depth: (-distance).max(0.0), distance, divergent, reseeded, planes }
+    }
+
+    /// Walks through poses between the last one and this one. True if that would take too many: then Near is lost.
+    #[cold]
+    fn follow_jump(&mut self, a: &Body, b: &Body, pose: &Pose, limit: f64, planes: &mut u32) -> bool {
+        let travel = (pose.transform_point(a.center) - self.last.transform_point(a.center)).length();
+        let turn = self.last.rotation_to(pose).length();
+        let count = ((travel + a.radius * turn) / limit).ceil();
+        if !(count <= f64::from(MAX_SUBSTEPS)) {
+            self.seeded = false;
+            return true;
+        }
+        for i in 1..count as u32 {
+            let between = self.last.interpolate(pose, f64::from(i) / count);
+            let found = Placed::new(a, b, &between).settle(self.near, STEP_MOVES, planes);
+            self.near = found.face.contact;
+        }
+        false
+    }
+
+    /// A fresh Near from nothing: down from the line of centres, then to the globally nearest plane.
+    #[cold]
+    fn seed(&mut self, placed: &Placed<'_>, pose: &Pose, scratch: &mut AuditScratch, planes: &mut u32) -> Found {
+        let (a, b) = (placed.a, placed.b);
+        let m = (placed.x + placed.r * a.center - b.center).try_normalize().unwrap_or(DVec3::Z);
+        let va = a.lowest(placed.rt * m, a.first_vertex, planes);
+        let vb = b.lowest(-m, b.first_vertex, planes);
+        let moves = STEP_MOVES + (a.planes.len() + b.planes.len()) as u32;
+        let mut near = placed.settle(placed.node_from_direction(m, va, vb), moves, planes);
+        self.rival = None;
+        self.certificate = Certificate::NONE;
+        for _ in 0..MAX_RIVALS {
+            if near.face.distance > 0.0 {
+                break;
+            }
+            match audit(placed, &near, placed.vertices_of(near.face.contact), scratch, planes) {
+                Verdict::Nearer { direction, a, b } => {
+                    let found = placed.settle(placed.node_from_direction(direction, a, b), moves, planes);
+                    if !(found.face.distance > near.face.distance) {
+                        break;
+                    }
+                    near = found;
+                }
+                Verdict::Proven { tan_half_cap, slack } => {
+                    self.certificate = Certificate::new(placed, pose, &near, tan_half_cap, slack);
+                    break;
+                }
+                Verdict::Open => break,
+            }
+        }
+        self.seeded = true;
+        near
+    }
+
+    /// The part of the step that only deep or doubtful contacts need: is another plane nearer, is `x` free after all?
+    #[cold]
+    fn examine(
+        &mut self,
+        placed: &Placed<'_>,
+        pose: &Pose,
+        near: Found,
+        scratch: &mut AuditScratch,
+        reseeded: &mut bool,
+        planes: &mut u32,
+    ) -> (Found, bool) {
+        // The rival is tracked like Near; it stops being one when it is no nearer.
+        let mut best = near;
+        if let Some(rival) = self.rival {
+            let found = placed.settle(rival, STEP_MOVES, planes);
+            if found.face.distance > near.face.distance + 2.0 * placed.eps {
+                best = found;
+            } else {
+                self.rival = None;
+            }
+        }
+        let mut proven = false;
+        for _ in 0..MAX_RIVALS {
+            if best.face.distance > 0.0 {
+                // One plane with f > 0 proves freedom: let go.
+                *reseeded = true;
+                self.rival = None;
+                return (best, false);
+            }
+            if inscribed_ball_proves(placed, &best) || self.certificate.holds(placed, pose, &best) {
+                proven = true;
+                break;
+            }
+            match audit(placed, &best, placed.vertices_of(best.face.contact), scratch, planes) {
+                Verdict::Proven { tan_half_cap, slack } => {
+                    self.certificate = Certificate::new(placed, pose, &best, tan_half_cap, slack);
+                    proven = true;
+                    break;
+                }
+                Verdict::Nearer { direction, a, b } => {
+                    let found = placed.settle(placed.node_from_direction(direction, a, b), STEP_MOVES, planes);
+                    if !(found.face.distance > best.face.distance) {
+                        break;
+                    }
+                    best = found;
+                }
+                Verdict::Open => break,
+            }
+        }
+        self.rival = (best.face.distance > near.face.distance + 2.0 * placed.eps).then_some(best.face.contact);
+        (near, self.rival.is_some() || !proven)
+    }
+}
+
+/// Tracks the contact of one pair of convex polyhedra (paper, section III): A moves, B stands in W.
+///
+/// A step costs the same for small and large bodies: it looks at Near's own sides, and at neighbours only where one
+/// could be better. It allocates nothing and its work is bounded.
+#[derive(Clone, Debug)]
+pub struct Tracker {
+    a: Arc<Polyhedron>,
+    b: Arc<Polyhedron>,
+    bodies: Arc<(Body, Body)>,
+    state: PairState,
+    scratch: AuditScratch,
+}
+
+impl Tracker {
+    /// A tracker of A (own frame) against B (vertices in W). The first step seeds globally.
+    #[must_use]
+    pub fn new(a: Arc<Polyhedron>, b: Arc<Polyhedron>) -> Self {
+        let bodies = Arc::new((Body::new(&a, true), Body::new(&b, false)));
+        Self { a, b, bodies, state: PairState::NEW, scratch: AuditScratch::new() }
+    }
+
+    /// The moving body.
+    #[must_use]
+    pub fn moving(&self) -> &Arc<Polyhedron> {
+        &self.a
+    }
+
+    /// The obstacle.
+    #[must_use]
+    pub fn fixed(&self) -> &Arc<Polyhedron> {
+        &self.b
+    }
+
+    /// Forgets the past and finds the globally nearest C-face at `pose` (A in W).
+    pub fn seed(&mut self, pose: &Pose) -> Tracked {
+        self.state.forget();
+        self.step(pose)
+    }
+
+    /// Follows A to `pose` (A in W). A pose that is not finite changes nothing and reads as free at distance 0+.
+    #[inline]
+    pub fn step(&mut self, pose: &Pose) -> Tracked {
+        let (a, b) = &*self.bodies;
+        self.state.step(a, b, &mut self.scratch, pose)
+    }
+
+    /// The local subgraph at the last pose (paper, section II.A): Near and the C-faces that share an edge with it.
+    /// For pictures and tests; not needed by the step. Returns how many `out` received.
+    pub fn local(&self, pose: &Pose, out: &mut [CFace]) -> usize {
+        let placed = Placed::new(&self.bodies.0, &self.bodies.1, pose);
+        let mut count = 0;
+        let mut push = |f: CFace| {
+            if let Some(slot) = out.get_mut(count) {
+                *slot = f;
+                count += 1;
+            }
+        };
+        push(placed.plane(self.state.near()));
+        placed.each_neighbor(self.state.near(), |n| push(placed.plane(n)));
+        count
+    }
+}
