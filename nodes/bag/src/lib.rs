@@ -17,6 +17,7 @@ pub mod msg;
 mod poses;
 mod qos;
 mod resync;
+mod summary;
 mod ticks;
 mod type_hash;
 
@@ -31,4 +32,5 @@ pub use mcap_scan::Damage;
 pub use metadata::{FileMetadata, TopicMetadata};
 pub use poses::{PoseLog, read_poses};
 pub use qos::Qos;
+pub use summary::RunSummary;
 pub use ticks::{TickLog, TickWriter, Ticks, read_ticks, write_ticks};

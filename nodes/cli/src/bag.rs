@@ -17,6 +17,11 @@ enum Command {
         /// The bag's directory.
         dir: PathBuf,
     },
+    /// A recorded run at a glance: ticks, formations over time, depth, force, punctuality.
+    Summary {
+        /// The bag's directory.
+        dir: PathBuf,
+    },
     /// The sequence of contact formations.
     Segment {
         /// The bag's directory.
@@ -31,6 +36,7 @@ enum Command {
 pub fn run(args: &Args) -> Result<(), Failure> {
     match &args.command {
         Command::Info { dir } => info(dir),
+        Command::Summary { dir } => crate::bag_summary::run(dir),
         Command::Segment { out, .. } => Err(Failure::file(out, "not available yet")),
     }
 }

@@ -1,6 +1,7 @@
 //! The program `cspace-haptics`: contact tracking, rendering, scene checks, bags and pictures without ROS.
 
 mod bag;
+mod bag_summary;
 mod failure;
 #[cfg(feature = "inspect")]
 mod inspect;

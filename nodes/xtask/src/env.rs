@@ -11,6 +11,7 @@ mod variables;
 
 use crate::workspace;
 use anyhow::Result;
+pub use pypi::bring_python_tools;
 use std::process::ExitCode;
 pub use variables::Variables;
 

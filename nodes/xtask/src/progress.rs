@@ -64,6 +64,14 @@ impl Step {
     /// # Errors
     /// When it cannot be started or fails; the last lines of its output are printed, the error is one line.
     pub fn run(&self, command: &mut Command, log: &Path) -> Result<()> {
+        self.run_reading(command, log, |_| false)
+    }
+
+    /// The same; `read` sees each line first and keeps it from people by returning true.
+    ///
+    /// # Errors
+    /// As for [`Step::run`].
+    pub fn run_reading(&self, command: &mut Command, log: &Path, mut read: impl FnMut(&str) -> bool) -> Result<()> {
         let program = command.get_program().to_string_lossy().into_owned();
         let (reader, writer) = std::io::pipe().context("cannot create a pipe")?;
         command.stdin(Stdio::null()).stdout(writer.try_clone()?).stderr(writer);
@@ -81,12 +89,15 @@ impl Step {
         while reader.read_until(b'\n', &mut line)? > 0 {
             file.write_all(&line)?;
             let text = String::from_utf8_lossy(&line).trim_end().to_owned();
+            line.clear();
+            if read(&text) {
+                continue;
+            }
             self.detail(&text);
             if tail.len() == 8 {
                 tail.pop_front();
             }
             tail.push_back(text);
-            line.clear();
         }
         let status = child.wait()?;
         if !status.success() {

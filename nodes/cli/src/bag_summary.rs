@@ -1,0 +1,20 @@
+use crate::failure::Failure;
+use crate::stdout::say;
+use bag::{BagReader, RunSummary, Ticks};
+use std::path::Path;
+
+/// `bag summary`: what a recorded run came to.
+pub fn run(dir: &Path) -> Result<(), Failure> {
+    let reader = BagReader::open(dir).map_err(Failure::plain)?;
+    let mut ticks = Ticks::new(&reader, None).map_err(Failure::plain)?;
+    let mut summary = RunSummary::default();
+    for tick in ticks.by_ref() {
+        summary.add(&tick.map_err(Failure::plain)?);
+    }
+    say(&format!("ticks recorded  {}", summary.ticks()))?;
+    say(&format!("ticks lost      {}", ticks.missing()))?;
+    for damage in ticks.damage() {
+        say(&format!("damage          {} at byte {}: {}", damage.file, damage.offset, damage.what))?;
+    }
+    say(summary.to_string().trim_end())
+}

@@ -1,0 +1,119 @@
+//! `cargo xtask test`: everything that CI runs, step by step, to the end even when one fails.
+
+use crate::cargo_build::{self, cargo};
+use crate::env::{self, Variables};
+use crate::workspace;
+use anyhow::Result;
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+/// What to run.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Only the steps whose name contains this text
+    #[arg(long)]
+    only: Option<String>,
+}
+
+/// Runs the steps and says how many passed.
+///
+/// # Errors
+/// The environment cannot be brought: nothing can be tested then.
+pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+    let mut steps = Steps { only: arguments.only.as_deref(), passed: 0, failed: Vec::new() };
+    steps.run("rustfmt", cargo().args(["fmt", "--all", "--check"]));
+
+    // From here on ROS is sourced throughout and every step takes the whole workspace: with other selections the
+    // large dependencies would get other features and be compiled again.
+    let variables = env::bring()?;
+    let with_ros = |arguments: &[&str]| {
+        let mut command = cargo();
+        variables.apply(&mut command).args(arguments);
+        command
+    };
+    steps.run("clippy", &mut with_ros(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]));
+    steps.run("rustdoc", with_ros(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"));
+    steps.run("tests of the workspace", &mut with_ros(&["test", "--workspace", "--no-fail-fast"]));
+    steps.run_with("system tests on ROS 2", || system_tests(&variables));
+    Ok(steps.conclude())
+}
+
+/// The Python programs that look at the nodes, the bags and the recordings from outside.
+fn system_tests(variables: &Variables) -> Result<Command> {
+    let executables = cargo_build::nodes(variables)?;
+    let tools = env::bring_python_tools()?;
+    let domain = crate::demo::domain::take(None)?;
+    let mut command = variables.command("python3");
+    let tests = workspace::root().join("tests/python");
+    command
+        .current_dir(&tests)
+        .args(["-m", "unittest", "discover", "-v", "-s"])
+        .arg(&tests)
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .env("PYTHONUNBUFFERED", "1")
+        .env("CSPACE_HAPTICS_BIN", executables.folder()?)
+        .env("CSPACE_HAPTICS_ROOT", workspace::root())
+        .env("CSPACE_HAPTICS_TOOLS", tools)
+        .env("CSPACE_HAPTICS_XTASK", "/proc/self/exe")
+        .env("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+        .env("ROS_LOCALHOST_ONLY", "1")
+        .env_remove("ROS_STATIC_PEERS")
+        .env("ROS_DOMAIN_ID", domain.id.to_string());
+    // Held until the end of this process, that is of all tests.
+    std::mem::forget(domain);
+    Ok(command)
+}
+
+struct Steps<'a> {
+    only: Option<&'a str>,
+    passed: usize,
+    failed: Vec<String>,
+}
+
+impl Steps<'_> {
+    fn run(&mut self, name: &str, command: &mut Command) {
+        if !self.wanted(name) {
+            return;
+        }
+        eprintln!("\n=== {name}");
+        let begun = Instant::now();
+        let outcome = command.status();
+        let seconds = begun.elapsed().as_secs_f64();
+        match outcome {
+            Ok(status) if status.success() => {
+                eprintln!("=== {name}: passed ({seconds:.0} s)");
+                self.passed += 1;
+            }
+            Ok(status) => self.fail(name, &status.to_string()),
+            Err(error) => self.fail(name, &format!("{} cannot be started: {error}", command.get_program().display())),
+        }
+    }
+
+    fn run_with(&mut self, name: &str, make: impl FnOnce() -> Result<Command>) {
+        if !self.wanted(name) {
+            return;
+        }
+        match make() {
+            Ok(mut command) => self.run(name, &mut command),
+            Err(error) => self.fail(name, &format!("{error:#}")),
+        }
+    }
+
+    fn wanted(&self, name: &str) -> bool {
+        self.only.is_none_or(|only| name.contains(only))
+    }
+
+    fn fail(&mut self, name: &str, reason: &str) {
+        eprintln!("=== {name}: FAILED ({reason})");
+        self.failed.push(name.to_owned());
+    }
+
+    fn conclude(self) -> ExitCode {
+        eprintln!();
+        for name in &self.failed {
+            println!("failed: {name}");
+        }
+        println!("{} passed, {} failed", self.passed, self.failed.len());
+        if self.failed.is_empty() && self.passed > 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    }
+}
