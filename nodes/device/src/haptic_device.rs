@@ -41,6 +41,23 @@ pub struct DeviceSpec {
     pub damping: f64,
 }
 
+impl DeviceSpec {
+    /// A desktop force-feedback arm of the usual size, where nothing better is known.
+    #[must_use]
+    pub fn force_feedback(name: &str) -> Self {
+        Self {
+            name: name.into(),
+            workspace: spatial::DVec3::splat(0.2),
+            max_force: 20.0,
+            max_torque: 1.0,
+            max_stiffness: 3000.0,
+            resolution: 1e-5,
+            mass: 0.1,
+            damping: 1.0,
+        }
+    }
+}
+
 /// A device as the servo thread sees it. Neither call blocks, allocates or locks: drivers that must, keep a thread of
 /// their own and speak through latest-value cells.
 pub trait HapticDevice: Send {

@@ -55,16 +55,7 @@ impl SimulatedOperator {
         let mut rng = Pcg64::seed_from_u64(config.seed);
         let tremor = Tremor::new(&mut rng, config.tremor_force, config.tremor_torque, STEP);
         let mut this = Self {
-            spec: DeviceSpec {
-                name: "simulated".into(),
-                workspace: DVec3::splat(0.2),
-                max_force: 20.0,
-                max_torque: 1.0,
-                max_stiffness: 3000.0,
-                resolution: 1e-6,
-                mass: 0.1,
-                damping: 1.0,
-            },
+            spec: DeviceSpec::force_feedback("simulated"),
             arm: Arm::new(plan.start, config),
             stroke: Stroke::new(plan.start, &plan.start, 1.0),
             config,
