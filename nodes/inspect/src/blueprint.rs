@@ -1,0 +1,135 @@
+use crate::clock::{ROBOT_TIME, TICK};
+use crate::layout::{Node, View, send};
+use crate::sink::APPLICATION;
+use crate::subject::Subject;
+use crate::{applicability, contact_states, cspace_view, events, legend, physical, series};
+use glam::DVec3;
+use rerun::external::re_sdk_types::blueprint::archetypes::{
+    EyeControls3D, LineGrid3D, PlotLegend, TextLogColumns, TimePanelBlueprint, VisibleTimeRanges, VisualBounds2D,
+};
+use rerun::external::re_sdk_types::blueprint::components::{Corner2D, PanelState};
+use rerun::external::re_sdk_types::datatypes::{TimeInt, TimeRange, TimeRangeBoundary, Utf8, VisibleTimeRange};
+use rerun::{RecordingStream, RecordingStreamResult};
+
+/// Length of the trail of `x` in the C-space view.
+const TRAIL_SECONDS: i64 = 3;
+
+/// Where to look from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eye {
+    /// Position of the eye, metres, W.
+    pub position: DVec3,
+    /// Point in the middle of the picture, metres, W.
+    pub target: DVec3,
+}
+
+impl Eye {
+    /// Looks at a box from the front, right and above, so that it fills the picture.
+    pub(crate) fn facing((low, high): (DVec3, DVec3)) -> Self {
+        let target = 0.5 * (low + high);
+        let distance = 1.15 * (high - low).length().max(1e-6);
+        Self { position: target + DVec3::new(0.62, -0.68, 0.40) * distance, target }
+    }
+
+    fn controls(&self) -> EyeControls3D {
+        EyeControls3D::new()
+            .with_position(self.position.as_vec3().to_array())
+            .with_look_target(self.target.as_vec3().to_array())
+            .with_eye_up([0.0, 0.0, 1.0])
+    }
+}
+
+/// The two eyes of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eyes {
+    /// Of the physical scene.
+    pub physical: Eye,
+    /// Of the C-space view.
+    pub cspace: Eye,
+}
+
+impl Eyes {
+    pub(crate) fn of(subject: &Subject) -> Self {
+        let (low, high) = subject.fixed_bounds();
+        let margin = DVec3::splat(subject.moving_size());
+        let physical = Eye::facing((low, high + DVec3::Z * margin.z));
+        // The C-obstacles are the obstacles grown by the part.
+        Self { physical, cspace: Eye::facing((low - margin, high + margin)) }
+    }
+}
+
+fn view_3d(title: &str, root: &str, eye: &Eye) -> View {
+    View::new("3D", title, root)
+        .with("EyeControls3D", eye.controls())
+        .with("LineGrid3D", LineGrid3D::new().with_visible(false))
+}
+
+fn legend_view() -> View {
+    let (x_range, y_range) = legend::bounds();
+    let range = rerun::external::re_sdk_types::datatypes::Range2D { x_range: x_range.into(), y_range: y_range.into() };
+    let bounds = VisualBounds2D::new(rerun::external::re_sdk_types::blueprint::components::VisualBounds2D(range));
+    View::new("2D", "Legend", legend::LEGEND).with("VisualBounds2D", bounds)
+}
+
+fn log_view() -> View {
+    let column = rerun::external::re_sdk_types::blueprint::datatypes::TimelineColumn {
+        visible: true.into(),
+        timeline: ROBOT_TIME.into(),
+    };
+    View::new("TextLog", "Events", events::EVENTS).with(
+        "TextLogColumns",
+        TextLogColumns::new()
+            .with_timeline_columns([rerun::external::re_sdk_types::blueprint::components::TimelineColumn(column)]),
+    )
+}
+
+fn time_panel() -> TimePanelBlueprint {
+    TimePanelBlueprint::new().with_state(PanelState::Collapsed).with_timeline(ROBOT_TIME)
+}
+
+/// The last seconds of the trail, on both time lines.
+fn trail_range() -> VisibleTimeRanges {
+    let back = |timeline: &str, length: i64| {
+        rerun::external::re_sdk_types::blueprint::components::VisibleTimeRange(VisibleTimeRange {
+            timeline: Utf8::from(timeline),
+            range: TimeRange {
+                start: TimeRangeBoundary::CursorRelative(TimeInt(-length)),
+                end: TimeRangeBoundary::CursorRelative(TimeInt(0)),
+            },
+        })
+    };
+    VisibleTimeRanges::new([back(ROBOT_TIME, TRAIL_SECONDS * 1_000_000_000), back(TICK, TRAIL_SECONDS * 1000)])
+}
+
+/// Sends the layout of a run.
+pub(crate) fn send_run(stream: &RecordingStream, eyes: &Eyes) -> RecordingStreamResult<()> {
+    let physical = view_3d("Physical space [m]", physical::ROOT, &eyes.physical);
+    let cspace = view_3d("C-space at the present orientation [m]", cspace_view::ROOT, &eyes.cspace)
+        .entity(cspace_view::TRAIL, trail_range());
+    let plots = series::PLOTS.iter().map(|plot| {
+        let legend = PlotLegend::new().with_corner(Corner2D::LeftTop);
+        (1.0, Node::View(View::new("TimeSeries", plot.title, plot.entity).with("PlotLegend", legend)))
+    });
+    let lanes = View::new("StateTimeline", "Contact formation and health", "/state");
+    let graphs = vec![
+        Node::View(View::new("Graph", "Applicable C-faces of the nearest pair", applicability::APPLICABILITY)),
+        Node::View(View::new("Graph", "Contact states of the run", contact_states::CONTACT_STATES)),
+    ];
+    let spaces = Node::Row(vec![(1.0, Node::View(physical)), (1.0, Node::View(cspace))]);
+    let bottom = Node::Row(vec![(1.0, Node::Tabs(graphs)), (1.0, Node::View(log_view()))]);
+    let left = Node::Column(vec![(5.6, spaces), (1.0, Node::View(legend_view())), (3.6, bottom)]);
+    let mut right: Vec<(f32, Node)> = plots.collect();
+    right.push((0.75, Node::View(lanes)));
+    let root = Node::Row(vec![(2.7, left), (1.0, Node::Column(right))]);
+    send(stream, APPLICATION, root, &time_panel())
+}
+
+/// Sends the layout of a scene without a run, its sweep on the time line `sweep`.
+pub(crate) fn send_overview(stream: &RecordingStream, eyes: &Eyes, sweep: &str) -> RecordingStreamResult<()> {
+    let physical = view_3d("Physical space [m]: parts and convex pieces", physical::ROOT, &eyes.physical);
+    let cspace = view_3d("C-space [m]: C-obstacles at the orientation of the sweep", cspace_view::ROOT, &eyes.cspace);
+    let spaces = Node::Row(vec![(1.0, Node::View(physical)), (1.0, Node::View(cspace))]);
+    let root = Node::Column(vec![(8.0, spaces), (1.0, Node::View(legend_view()))]);
+    let panel = TimePanelBlueprint::new().with_state(PanelState::Collapsed).with_timeline(sweep);
+    send(stream, APPLICATION, root, &panel)
+}
