@@ -1,13 +1,16 @@
 //! The program `cspace-haptics`: contact tracking, rendering, scene checks, bags and pictures without ROS.
 
+mod atomic_file;
 mod bag;
 mod bag_summary;
+mod csv_io;
 mod failure;
 #[cfg(feature = "inspect")]
 mod inspect;
 mod replay;
 mod scene;
 mod stdout;
+mod step_time;
 mod track;
 
 use clap::{Parser, Subcommand};

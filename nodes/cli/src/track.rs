@@ -1,7 +1,19 @@
+use crate::atomic_file::AtomicFile;
+use crate::csv_io::{StampedPose, read_poses, read_text};
 use crate::failure::Failure;
-use std::path::PathBuf;
+use crate::step_time::StepTime;
+use cspace::{Polyhedron, PrincipalContact, Tracked, Tracker, principal_contact};
+use haptics::FormationKind;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// `track`: the nearest C-face of two convex parts along a motion.
+///
+/// The output has one row a pose: `t,distance,type,feature_a,feature_b,nx,ny,nz,formation,contacts,reseeded,divergent`.
+/// `distance` is the signed distance of A's origin to Near's plane in C-space, metres: `> 0` free, `<= 0` contact.
+/// Features count from 0: vertices in the order of the OBJ file, faces after coplanar ones were merged (in the order of
+/// their first face in the file), edges in the order in which those faces first run along them.
 #[derive(clap::Args)]
 pub struct Args {
     /// Mesh of the moving part A (OBJ, convex), in its own frame, metres.
@@ -21,7 +33,71 @@ pub struct Args {
     pub time: bool,
 }
 
+const HEADER: &str = "t,distance,type,feature_a,feature_b,nx,ny,nz,formation,contacts,reseeded,divergent\n";
+
 /// Runs `track`.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Err(Failure::file(&args.moving, "not available yet"))
+    let (a, b) = (read_polyhedron(&args.moving)?, read_polyhedron(&args.fixed)?);
+    let poses = read_poses(&args.poses)?;
+    let mut out = AtomicFile::create(&args.out)?;
+    out.write(HEADER)?;
+    let fresh = Tracker::new(a.clone(), b.clone());
+    let mut tracker = fresh.clone();
+    let mut row = String::with_capacity(256);
+    for sample in &poses {
+        let tracked = tracker.step(&sample.pose);
+        row.clear();
+        format_row(&mut row, sample, &tracked, &a, &b);
+        out.write(&row)?;
+    }
+    let time = args.time.then(|| StepTime::measure(&fresh, &poses, |tracker, s| tracker.step(&s.pose)));
+    out.finish()?;
+    time.map_or(Ok(()), |t| crate::stdout::say(&t.to_string()))
+}
+
+/// A convex polyhedron from an OBJ file; every error names the line of the vertex or face at fault.
+fn read_polyhedron(path: &Path) -> Result<Arc<Polyhedron>, Failure> {
+    let text = read_text(path)?;
+    let (mesh, lines) =
+        scene::parse_obj_with_lines(&text).map_err(|e| Failure::line(path, e.line.unwrap_or(1), e.reason))?;
+    Polyhedron::from_faces(&mesh.vertices, &mesh.faces).map(Arc::new).map_err(|e| {
+        let face = e.face().and_then(|f| lines.faces.get(f));
+        let line = face.or_else(|| e.vertex().and_then(|v| lines.vertices.get(v)));
+        Failure::line(path, line.copied().unwrap_or(1), format!("{e} (faces and vertices counted from 0)"))
+    })
+}
+
+fn format_row(row: &mut String, sample: &StampedPose, tracked: &Tracked, a: &Polyhedron, b: &Polyhedron) {
+    let near = &tracked.near;
+    let (kind, contacts) = if tracked.is_free() {
+        (FormationKind::Free, 0)
+    } else {
+        let (principal, contacts) = principal_contact(near, a, b, &sample.pose);
+        (formation_kind(principal), contacts)
+    };
+    let (feature_a, feature_b) = near.contact.features();
+    let n = near.normal_w;
+    // `{:?}` of an f64 is the shortest text that reads back to the same number. Writing to a String cannot fail.
+    let _ = writeln!(
+        row,
+        "{:?},{:?},{},{feature_a},{feature_b},{:?},{:?},{:?},{},{contacts},{},{}",
+        sample.t,
+        tracked.distance,
+        near.contact.type_letter(),
+        n.x,
+        n.y,
+        n.z,
+        kind.name(),
+        u8::from(tracked.reseeded),
+        u8::from(tracked.divergent),
+    );
+}
+
+fn formation_kind(p: PrincipalContact) -> FormationKind {
+    match p {
+        PrincipalContact::VertexFace => FormationKind::VertexFace,
+        PrincipalContact::EdgeEdge => FormationKind::EdgeEdge,
+        PrincipalContact::EdgeFace => FormationKind::EdgeFace,
+        PrincipalContact::FaceFace => FormationKind::FaceFace,
+    }
 }

@@ -18,6 +18,6 @@ mod urdf;
 pub use bundle::Bundle;
 pub use error::SceneError;
 pub use mesh::{Mesh, MeshError};
-pub use obj::parse_obj;
+pub use obj::{ObjLines, parse_obj, parse_obj_with_lines};
 pub use scene::{Body, Scene};
 pub use stl::parse_stl;

@@ -27,27 +27,44 @@ const IGNORED: &[&str] = &[
 /// Reads a Wavefront OBJ text: `v` and `f` statements, indices from 1 or counted back from the newest vertex.
 /// Every error names its line. Curves and surfaces (`curv`, `surf`, ...) are refused, not skipped.
 pub fn parse_obj(text: &str) -> Result<Mesh, MeshError> {
+    parse_obj_with_lines(text).map(|(mesh, _)| mesh)
+}
+
+/// Where a mesh's parts stand in its file, lines from 1: so that what is found wrong later can still name its line.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ObjLines {
+    /// The line of each vertex.
+    pub vertices: Vec<u64>,
+    /// The line of each face.
+    pub faces: Vec<u64>,
+}
+
+/// [`parse_obj`], with the line of every vertex and face.
+pub fn parse_obj_with_lines(text: &str) -> Result<(Mesh, ObjLines), MeshError> {
     let mut mesh = Mesh::default();
-    let mut face_lines = Vec::new();
+    let mut lines = ObjLines::default();
     for (line, statement) in statements(text) {
         let mut words = statement.split_whitespace();
         match words.next() {
             None => {}
-            Some("v") => mesh.vertices.push(vertex(words, line)?),
+            Some("v") => {
+                mesh.vertices.push(vertex(words, line)?);
+                lines.vertices.push(line);
+            }
             Some("f") => {
                 let face: Vec<u32> = words.map(|w| corner(w, mesh.vertices.len(), line)).collect::<Result<_, _>>()?;
                 if face.len() < 3 {
                     return Err(MeshError::at(line, format!("a face of {} corners: need at least 3", face.len())));
                 }
                 mesh.faces.push(face);
-                face_lines.push(line);
+                lines.faces.push(line);
             }
             Some(word) if IGNORED.contains(&word) => {}
             Some(word) => return Err(MeshError::at(line, format!("unknown OBJ statement {word:.40?}"))),
         }
     }
     // A face may name a vertex that comes later in the file, so this waits for the end.
-    for (face, line) in mesh.faces.iter().zip(&face_lines) {
+    for (face, line) in mesh.faces.iter().zip(&lines.faces) {
         if let Some(i) = face.iter().find(|&&i| i as usize >= mesh.vertices.len()) {
             let n = mesh.vertices.len();
             return Err(MeshError::at(*line, format!("the face names vertex {}, the file has {n}", u64::from(*i) + 1)));
@@ -56,7 +73,7 @@ pub fn parse_obj(text: &str) -> Result<Mesh, MeshError> {
     if mesh.faces.is_empty() {
         return Err(MeshError::whole("no faces: is it an OBJ mesh?"));
     }
-    Ok(mesh)
+    Ok((mesh, lines))
 }
 
 /// Statements with the number of their first line: comments cut off, lines that end in `\` joined.

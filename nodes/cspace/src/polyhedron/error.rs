@@ -81,3 +81,31 @@ pub enum PolyhedronError {
         face: usize,
     },
 }
+
+impl PolyhedronError {
+    /// The input face at fault, if it is one.
+    #[must_use]
+    pub const fn face(&self) -> Option<usize> {
+        match *self {
+            Self::Empty | Self::NotFinite { .. } => None,
+            Self::IndexOutOfRange { face, .. }
+            | Self::DegenerateFace { face }
+            | Self::NotPlanar { face, .. }
+            | Self::Open { face, .. }
+            | Self::NotOriented { face, .. }
+            | Self::InsideOut { face }
+            | Self::Flat { face }
+            | Self::NotConvex { face, .. }
+            | Self::NotOneBody { face } => Some(face),
+        }
+    }
+
+    /// The input vertex at fault, if it is one alone.
+    #[must_use]
+    pub const fn vertex(&self) -> Option<usize> {
+        match *self {
+            Self::NotFinite { vertex } => Some(vertex),
+            _ => None,
+        }
+    }
+}

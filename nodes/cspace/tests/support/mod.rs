@@ -1,6 +1,9 @@
 //! Shapes, motions and independent oracles for tests, benches and examples.
 #![allow(dead_code, missing_docs)]
 
+pub mod judge;
+pub mod motions;
+
 use cspace::Polyhedron;
 use parry3d_f64::math::Pose as ParryPose;
 use parry3d_f64::shape::ConvexPolyhedron;
