@@ -1,17 +1,34 @@
 //! Contact region, force laws, virtual coupling, passivity, limits.
 //!
-//! Source: paper section IV; MATH sections are cited where the code goes beyond it.
+//! Source: paper section IV for the contact rules; literature is cited where the code goes beyond it.
+//! [`Renderer`] is the entry: it follows the hand's pose and gives wrench, surface contact pose and contacts.
 
 mod coupling;
+mod depth_law;
 mod formation;
+mod friction;
 mod gains;
 mod law;
 mod limiter;
+mod paper_torque;
 mod passivity;
+mod projection;
+mod proxy;
+mod proxy_view;
+mod reduced_hull;
+mod region;
+mod renderer;
+mod seams;
+mod sense;
+mod solid;
+#[cfg(test)]
+mod testing;
 
 pub use coupling::{Coupling, low_pass_share};
 pub use formation::{ContactFormation, ContactPoint, FormationKind, MAX_CONTACTS};
+pub use friction::Coefficients;
 pub use gains::{Gains, LawKind};
 pub use law::{LawOutput, RenderLaw};
 pub use limiter::{Limited, Limiter};
 pub use passivity::{Displacement, Passivity, PassivityLimits, returnable_energy};
+pub use renderer::Renderer;

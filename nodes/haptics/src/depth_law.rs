@@ -1,0 +1,234 @@
+//! The laws that read the wrench off the hand's own pose: `paper`, `pstar` and `blended`.
+
+use crate::paper_torque::{convex_hull, torque};
+use crate::projection::{Projection, Row};
+use crate::reduced_hull::nearest_point;
+use crate::region::{Clipper, Placed, RegionPoint};
+use crate::sense::Sensed;
+use crate::solid::Solids;
+use crate::{ContactFormation, ContactPoint, FormationKind, Gains, LawKind};
+use cspace::{BasicContact, CFace};
+use spatial::{DVec3, Pose, Wrench};
+
+/// Contacts whose depths differ by less than this part of the moving part's size take place together; half as much again keeps
+/// them together once they are, so that the formation does not chatter.
+const TIED: f64 = 1e-6;
+/// Planes are one constraint when their normals differ by less than this (radians) and their offsets by this part of the part's size.
+const EQUAL: f64 = 4e-6;
+
+/// A pair whose plane counts: the felt one, and its contacts in the scratch list.
+#[derive(Clone, Copy, Debug)]
+struct Touch {
+    part: u32,
+    piece: u32,
+    plane: CFace,
+    first: usize,
+    end: usize,
+    tie: f64,
+    push: f64,
+}
+
+/// What a depth law made of a pose.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DepthResult {
+    pub wrench: Wrench,
+    pub scp: DVec3,
+    pub depth: f64,
+    pub formation: ContactFormation,
+    pub dropped: u32,
+}
+
+/// Scratch of the depth laws, and whether contact was multiple at the last tick.
+#[derive(Clone, Debug)]
+pub(crate) struct DepthLaw {
+    touches: Vec<Touch>,
+    rows: Vec<Row<3>>,
+    projection: Projection<3>,
+    points: Vec<RegionPoint>,
+    places: Vec<DVec3>,
+    weights: Vec<f64>,
+    order: Vec<u16>,
+    hull: Vec<DVec3>,
+    clipper: Clipper,
+    multiple: bool,
+}
+
+/// Most contact points held at once.
+const ROOM: usize = 256;
+
+impl DepthLaw {
+    pub fn new(solids: &Solids) -> Self {
+        let world = &solids.world;
+        let pairs = world.moving.len() * world.fixed.len();
+        Self {
+            touches: Vec::with_capacity(pairs),
+            rows: Vec::with_capacity(pairs),
+            projection: Projection::new(),
+            points: Vec::with_capacity(ROOM),
+            places: Vec::with_capacity(ROOM),
+            weights: Vec::with_capacity(ROOM),
+            order: vec![0; ROOM],
+            hull: Vec::with_capacity(ROOM),
+            clipper: Clipper::for_world(world),
+            multiple: false,
+        }
+    }
+
+    pub fn reset(&mut self) {
+        self.multiple = false;
+    }
+
+    /// The wrench at the hand's pose from the pairs sensed there.
+    pub fn render(
+        &mut self,
+        solids: &Solids,
+        pairs: &[Sensed],
+        hip: &Pose,
+        law: LawKind,
+        gains: &Gains,
+    ) -> DepthResult {
+        let placed = Placed::new(hip);
+        let x0 = hip.translation;
+        let depth = self.gather(solids, pairs, hip, &placed);
+        let mut result =
+            DepthResult { wrench: Wrench::ZERO, scp: x0, depth, formation: ContactFormation::FREE, dropped: 0 };
+        if depth <= 0.0 {
+            self.multiple = false;
+            return result;
+        }
+        // Corners by projection: SCP = argmin |p - x0|^2 with p on the free side of one plane per pair. One plane alone
+        // gives equation (1).
+        self.rows.clear();
+        for t in &self.touches {
+            let n = t.plane.normal_w.to_array();
+            self.rows.push(Row { normal: n, offset: -t.plane.distance, equality: false });
+        }
+        self.projection.solve(&self.rows);
+        let shift = DVec3::from_array(self.projection.z);
+        result.scp = x0 + shift;
+        for (i, m) in self.projection.active() {
+            self.touches[i].push = m;
+        }
+        result.wrench.force = shift * gains.stiffness; // (2)
+        self.contacts(solids, &placed, law, gains, &mut result);
+        for i in 0..self.touches.len() {
+            let t = self.touches[i];
+            if t.push > 0.0 {
+                result.wrench.torque += self.torque_of(i, t, x0, law, gains);
+            }
+        }
+        result
+    }
+
+    /// The penetration of the hand's pose, metres, `>= 0`.
+    pub fn depth(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose) -> f64 {
+        self.gather(solids, pairs, hip, &Placed::new(hip))
+    }
+
+    /// Lists the felt planes of all pairs in reach; returns the depth, metres.
+    fn gather(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
+        self.touches.clear();
+        self.points.clear();
+        let deepest = pairs.iter().map(|p| -p.near.distance).fold(0.0, f64::max);
+        if deepest <= 0.0 {
+            return 0.0;
+        }
+        let mut depth = 0.0_f64;
+        for s in pairs {
+            // A plane with f > 0 proves the pair apart, felt or not; but the SCP must not be pushed into it, so those
+            // within twice the depth stay as constraints.
+            let part = s.part as usize;
+            let piece = s.piece as usize;
+            let free = s.near.distance > 0.0;
+            if s.near.distance > 2.0 * deepest {
+                continue;
+            }
+            let Some(plane) = solids.felt_plane(part, piece, hip, placed, &s.near) else { continue };
+            if free && plane.contact != s.near.contact {
+                continue;
+            }
+            depth = depth.max(-plane.distance);
+            let tie = 2.0 * solids.part(part).size() * TIED;
+            self.touches.push(Touch { part: s.part, piece: s.piece, plane, first: 0, end: 0, tie, push: 0.0 });
+        }
+        depth
+    }
+
+    /// Clips the contact regions of the penetrating pairs and states the formation.
+    fn contacts(&mut self, solids: &Solids, placed: &Placed, law: LawKind, gains: &Gains, result: &mut DepthResult) {
+        // One state for all pairs: the pieces of one obstacle must switch together.
+        let was_multiple = std::mem::take(&mut self.multiple);
+        for t in &mut self.touches {
+            if t.plane.distance >= 0.0 {
+                continue;
+            }
+            let (part, piece) = (t.part as usize, t.piece as usize);
+            t.tie *= if was_multiple { 1.5 } else { 1.0 };
+            let reach = t.plane.distance + if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
+            t.first = self.points.len();
+            self.clipper.region(solids, part, piece, placed, &t.plane, reach, &mut self.points);
+            t.end = self.points.len();
+            self.places.clear();
+            self.places.extend(self.points[t.first..t.end].iter().map(|p| p.point_w));
+            convex_hull(&self.places, t.plane.normal_w, &mut self.hull);
+            let kind = match (self.hull.len(), t.plane.contact) {
+                (0 | 1, BasicContact::TypeC { .. }) => FormationKind::EdgeEdge,
+                (0 | 1, _) => FormationKind::VertexFace,
+                (2, _) => FormationKind::EdgeFace,
+                _ => FormationKind::FaceFace,
+            };
+            self.multiple |= self.hull.len() > 1;
+            result.formation.kind = result.formation.kind.max(kind);
+            for p in &self.points[t.first..t.end] {
+                let kept = result.formation.push(ContactPoint {
+                    part_a: t.part,
+                    piece_b: t.piece,
+                    contact: p.contact,
+                    point_w: p.point_w,
+                    normal_w: p.normal_w,
+                    distance: p.gap,
+                    kind,
+                });
+                result.dropped += u32::from(!kept);
+            }
+        }
+    }
+
+    /// The torque of the force share that plane `i` carries, over the contacts of all pairs with an equal plane.
+    fn torque_of(&mut self, i: usize, t: Touch, x0: DVec3, law: LawKind, gains: &Gains) -> DVec3 {
+        let normal = t.plane.normal_w;
+        let force = normal * (t.push * gains.stiffness);
+        self.places.clear();
+        self.weights.clear();
+        let fade = if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
+        for (j, u) in self.touches.iter().enumerate() {
+            let equal = i == j
+                || (u.plane.normal_w - normal).length() <= EQUAL
+                    && (u.plane.distance - t.plane.distance).abs() <= EQUAL * t.tie / TIED;
+            if !equal {
+                continue;
+            }
+            for p in &self.points[u.first..u.end] {
+                if self.places.len() == ROOM {
+                    break;
+                }
+                // (5), (6) and the nearest point know the contact plane only: slide App along n to the level of x0.
+                self.places.push(p.point_w + normal * normal.dot(x0 - p.point_w));
+                let short = p.gap - t.plane.distance;
+                let weight = if law == LawKind::Blended { (1.0 - short / fade).clamp(0.0, 1.0) } else { 1.0 };
+                self.weights.push(weight);
+            }
+        }
+        if law == LawKind::Paper {
+            return torque(&self.places, normal, force, x0, &mut self.hull).0;
+        }
+        if self.weights.iter().sum::<f64>() < 1.0 {
+            // Only rounding lets the deepest contact weigh less than one.
+            if let Some(w) = self.weights.iter_mut().max_by(|a, b| a.total_cmp(b)) {
+                *w = 1.0;
+            }
+        }
+        let p = nearest_point(&self.places, &self.weights, &mut self.order, x0);
+        force.cross(x0 - p)
+    }
+}

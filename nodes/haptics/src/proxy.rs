@@ -1,0 +1,241 @@
+//! The proxy: the pose nearest to the hand's in the coupling's metric that penetrates nothing, followed from tick to tick.
+//!
+//! After Zilles and Salisbury 1995 and Ortega, Redon and Coquillart 2007. The constraints are the basic contacts of the
+//! contact regions in reach, not all C-faces: those are alternatives, and together they would forbid free poses.
+
+use crate::Gains;
+use crate::friction::Friction;
+use crate::projection::{Projection, Row};
+use crate::proxy_view::{PENETRATION, View};
+use crate::solid::Solids;
+use spatial::{DVec3, Pose, Wrench};
+
+/// Re-linearisations in one tick while steps are not cut short; with cut steps (fast motion), in all.
+const ROUNDS: usize = 4;
+const ROUNDS_FAST: usize = 16;
+/// Steps below this (metres at the body's reach) change the contact geometry by less than `1e-11` m: applied without
+/// looking again.
+const SMALL: f64 = 1e-6;
+/// Largest turn of one linearised step, radians.
+const TURN: f64 = 0.05;
+
+/// The proxy pose, the contacts seen there and the solver's scratch.
+#[derive(Debug)]
+pub(crate) struct Proxy {
+    pub pose: Pose,
+    pub view: View,
+    rows: Vec<Row<6>>,
+    projection: Projection<6>,
+    friction: Friction,
+    last_hip: Option<Pose>,
+    /// Motion since the last look, metres.
+    stale: f64,
+}
+
+/// A small motion of the proxy: translation (m) and rotation vector (rad), axes of W.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step {
+    pub dp: DVec3,
+    pub dtheta: DVec3,
+}
+
+impl Step {
+    fn scaled(self, s: f64) -> Self {
+        Self { dp: self.dp * s, dtheta: self.dtheta * s }
+    }
+
+    /// Largest way of a point of the body, metres.
+    fn way(&self, lever: f64) -> f64 {
+        self.dp.length() + lever * self.dtheta.length()
+    }
+}
+
+/// The coupling's metric: square roots of its stiffnesses.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Metric {
+    pub root_f: f64,
+    pub root_r: f64,
+}
+
+impl Metric {
+    fn new(gains: &Gains) -> Self {
+        // A stiffness of zero would leave the proxy undetermined; the wrench is scaled by the true gains anyway.
+        Self { root_f: gains.stiffness.max(1e-6).sqrt(), root_r: gains.rotation_stiffness.max(1e-9).sqrt() }
+    }
+
+    pub fn row(&self, normal: DVec3, moment: DVec3, offset: f64, goal: &Step, equality: bool) -> Row<6> {
+        let (n, m) = (normal / self.root_f, moment / self.root_r);
+        let offset = offset - normal.dot(goal.dp) - moment.dot(goal.dtheta);
+        Row { normal: [n.x, n.y, n.z, m.x, m.y, m.z], offset, equality }
+    }
+
+    pub fn step(&self, z: &[f64; 6], goal: &Step) -> Step {
+        Step {
+            dp: goal.dp + DVec3::new(z[0], z[1], z[2]) / self.root_f,
+            dtheta: goal.dtheta + DVec3::new(z[3], z[4], z[5]) / self.root_r,
+        }
+    }
+}
+
+impl Proxy {
+    pub fn new(solids: &Solids, friction: Friction) -> Self {
+        Self {
+            pose: Pose::IDENTITY,
+            view: View::new(solids),
+            rows: Vec::with_capacity(View::ROOM + 16),
+            projection: Projection::new(),
+            friction,
+            last_hip: None,
+            stale: 0.0,
+        }
+    }
+
+    /// Forgets the proxy; the next pose starts it anew.
+    pub fn reset(&mut self) {
+        self.last_hip = None;
+        self.friction.reset();
+        self.view.reset();
+    }
+
+    /// Puts the proxy at `pose` and pushes it out of whatever it penetrates there.
+    pub fn seed(&mut self, solids: &Solids, pose: &Pose, gains: &Gains) {
+        self.pose = *pose;
+        self.view.reset();
+        self.friction.reset();
+        self.view.look(solids, &self.pose);
+        self.stale = 0.0;
+        self.push_out(solids, &Metric::new(gains), 16);
+    }
+
+    /// Follows the hand for one tick. Returns true if the proxy had to be seeded anew.
+    pub fn follow(&mut self, solids: &Solids, hip: &Pose, gains: &Gains, dt: f64) -> bool {
+        let lever = self.view.lever;
+        let last = self.last_hip.replace(*hip);
+        let jumped = last.is_none_or(|last| {
+            let moved = Step { dp: hip.translation - last.translation, dtheta: last.rotation_to(hip) };
+            moved.way(lever) > self.view.jump
+        });
+        if jumped {
+            self.seed(solids, hip, gains);
+        }
+        let metric = Metric::new(gains);
+        let safe = self.pose;
+        // Edge rounding: the proxy may catch up with the hand at no more than the stated speed.
+        let mut budget = match last {
+            Some(last) if !jumped => {
+                let moved = Step { dp: hip.translation - last.translation, dtheta: last.rotation_to(hip) };
+                moved.way(lever) + gains.proxy_speed.max(0.0) * dt.max(0.0)
+            }
+            _ => f64::INFINITY,
+        };
+        if self.stale > SMALL {
+            self.look(solids);
+        }
+        let was_safe = self.view.penetration <= PENETRATION;
+        let mut drag = Wrench::ZERO;
+        let mut cut = 0;
+        for round in 0..ROUNDS_FAST {
+            if round - cut >= ROUNDS {
+                break;
+            }
+            let goal = self.goal(hip, &drag, gains);
+            let mut step = self.solve(&metric, &goal);
+            if round == 0 && self.friction.is_on(gains) {
+                drag =
+                    self.friction.drag(&self.view, &self.projection, &mut self.rows, &metric, &goal, &self.pose, gains);
+                let goal = self.goal(hip, &drag, gains);
+                step = self.solve(&metric, &goal);
+            }
+            let way = step.way(lever);
+            let limit = self.view.reach.min(budget).min(way * TURN / step.dtheta.length().max(1e-300));
+            let scale = if way > limit { limit / way } else { 1.0 };
+            cut += usize::from(way > self.view.reach);
+            let step = step.scaled(scale);
+            budget -= way * scale;
+            if scale == 1.0 && self.projection.active().next().is_none() && drag == Wrench::ZERO {
+                self.pose = *hip;
+            } else {
+                self.pose = self.pose.moved(step.dp, step.dtheta);
+            }
+            if way * scale <= SMALL {
+                // Gaps follow to first order.
+                self.view.shift(&step, &self.pose);
+                self.stale += way * scale;
+                break;
+            }
+            self.look(solids);
+            if budget <= SMALL {
+                break;
+            }
+        }
+        if self.stale > SMALL {
+            self.look(solids);
+        }
+        if self.view.penetration > PENETRATION {
+            self.push_out(solids, &metric, 4);
+        }
+        if self.view.penetration > PENETRATION && was_safe {
+            self.back_off(solids, &safe);
+        }
+        jumped
+    }
+
+    /// Elastic pull of the coupling on the hand: force (N) and torque (N.m), and its energy (J).
+    pub fn pull(&self, hip: &Pose, gains: &Gains) -> (Wrench, f64) {
+        let dp = self.pose.translation - hip.translation;
+        let dtheta = hip.rotation_to(&self.pose);
+        let wrench = Wrench::new(dp * gains.stiffness, dtheta * gains.rotation_stiffness);
+        let energy = 0.5 * (gains.stiffness * dp.length_squared() + gains.rotation_stiffness * dtheta.length_squared());
+        (wrench, energy)
+    }
+
+    fn look(&mut self, solids: &Solids) {
+        self.view.look(solids, &self.pose);
+        self.stale = 0.0;
+    }
+
+    /// Where the proxy would go if nothing were in its way: to the hand, but for the drag of friction.
+    fn goal(&self, hip: &Pose, drag: &Wrench, gains: &Gains) -> Step {
+        Step {
+            dp: hip.translation - self.pose.translation + drag.force / gains.stiffness.max(1e-6),
+            dtheta: self.pose.rotation_to(hip) + drag.torque / gains.rotation_stiffness.max(1e-9),
+        }
+    }
+
+    fn solve(&mut self, metric: &Metric, goal: &Step) -> Step {
+        self.rows.clear();
+        for p in &self.view.points {
+            let arm = p.point_w - self.pose.translation;
+            self.rows.push(metric.row(p.normal_w, arm.cross(p.normal_w), -p.gap, goal, false));
+        }
+        self.projection.solve(&self.rows);
+        metric.step(&self.projection.z, goal)
+    }
+
+    /// The least motion that removes the penetration left, in up to `rounds` steps.
+    fn push_out(&mut self, solids: &Solids, metric: &Metric, rounds: usize) {
+        for _ in 0..rounds {
+            if self.view.penetration <= PENETRATION {
+                return;
+            }
+            let step = self.solve(metric, &Step { dp: DVec3::ZERO, dtheta: DVec3::ZERO });
+            let turn = step.dtheta.length();
+            // Turning far under a linear model only stirs: what the turn cannot do, the next round's translation does.
+            let step = if turn > TURN { step.scaled(TURN / turn) } else { step };
+            self.pose = self.pose.moved(step.dp, step.dtheta);
+            self.look(solids);
+        }
+    }
+
+    /// Back towards the last pose known to be free, until nothing penetrates.
+    fn back_off(&mut self, solids: &Solids, safe: &Pose) {
+        let ahead = self.pose;
+        for s in [0.5, 0.25, 0.125, 0.0] {
+            self.pose = safe.interpolate(&ahead, s);
+            self.look(solids);
+            if self.view.penetration <= PENETRATION {
+                return;
+            }
+        }
+    }
+}

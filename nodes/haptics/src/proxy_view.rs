@@ -1,0 +1,156 @@
+//! What the proxy sees around it: the contacts of all pairs in reach, and how deep it penetrates.
+
+use crate::formation::{ContactFormation, ContactPoint, FormationKind};
+use crate::paper_torque::convex_hull;
+use crate::proxy::Step;
+use crate::region::{Clipper, Placed, RegionPoint};
+use crate::sense::Sense;
+use crate::solid::Solids;
+use cspace::BasicContact;
+use spatial::{DVec3, Pose};
+
+/// Penetration of the proxy that counts as none, metres.
+pub(crate) const PENETRATION: f64 = 1e-8;
+/// A contact takes place from this gap on and ends at the larger one, metres: the formation does not chatter.
+const TOUCHING: f64 = 1e-7;
+const LEAVING: f64 = 5e-7;
+/// Bounds of the reach, metres.
+const SHORTEST: f64 = 2e-4;
+const LONGEST: f64 = 3e-3;
+
+/// A pair in reach and its contacts in the list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct InReach {
+    pub part: u32,
+    pub piece: u32,
+    pub first: usize,
+    pub end: usize,
+}
+
+/// Contacts seen from the proxy.
+#[derive(Debug)]
+pub(crate) struct View {
+    pub sense: Sense,
+    pub points: Vec<RegionPoint>,
+    pub pairs: Vec<InReach>,
+    /// The deepest penetration at the proxy, metres; `<= 0` when free.
+    pub penetration: f64,
+    /// Contacts are listed up to this gap, and no step of the proxy is longer (metres).
+    pub reach: f64,
+    /// A motion of the hand in one tick beyond this is a jump, metres.
+    pub jump: f64,
+    /// Farthest point of A from its origin, metres.
+    pub lever: f64,
+    clipper: Clipper,
+    touching: Vec<bool>,
+    places: Vec<DVec3>,
+    hull: Vec<DVec3>,
+    pieces: usize,
+}
+
+impl View {
+    /// Most contacts listed.
+    pub const ROOM: usize = 160;
+
+    pub fn new(solids: &Solids) -> Self {
+        let world = &solids.world;
+        let thin = |it: &mut dyn Iterator<Item = f64>| it.fold(f64::INFINITY, f64::min);
+        let part = thin(&mut world.moving.iter().map(|p| p.inner_radius()));
+        let piece = thin(&mut world.fixed.iter().map(|p| p.polyhedron.inner_radius()));
+        // A C-obstacle is as thick as its two bodies together; a quarter of that cannot jump from one side to the other.
+        let thickness = 2.0 * (part + piece);
+        let reach = if thickness.is_finite() { (0.25 * thickness).clamp(SHORTEST, LONGEST) } else { LONGEST };
+        let lever = world.moving.iter().flat_map(|p| p.corner_ids().map(|v| p.vertex(v).length())).fold(0.0, f64::max);
+        let pairs = world.moving.len() * world.fixed.len();
+        Self {
+            sense: Sense::new(world.clone(), reach),
+            points: Vec::with_capacity(Self::ROOM),
+            pairs: Vec::with_capacity(pairs),
+            penetration: 0.0,
+            reach,
+            jump: 16.0 * reach,
+            lever,
+            clipper: Clipper::for_world(world),
+            touching: vec![false; pairs],
+            places: Vec::with_capacity(Self::ROOM),
+            hull: Vec::with_capacity(Self::ROOM),
+            pieces: world.fixed.len(),
+        }
+    }
+
+    pub fn reset(&mut self) {
+        self.sense.reset();
+        self.touching.fill(false);
+    }
+
+    /// Looks around from `pose`.
+    pub fn look(&mut self, solids: &Solids, pose: &Pose) {
+        self.sense.step(pose);
+        let placed = Placed::new(pose);
+        self.points.clear();
+        self.pairs.clear();
+        self.penetration = f64::NEG_INFINITY;
+        for s in &self.sense.pairs {
+            if s.near.distance > self.reach {
+                continue;
+            }
+            let (part, piece) = (s.part as usize, s.piece as usize);
+            // f > 0 proves the pair apart whether or not the plane is felt; inside, only felt planes count.
+            let Some(plane) = solids.felt_plane(part, piece, pose, &placed, &s.near) else { continue };
+            self.penetration = self.penetration.max(-s.near.distance.max(plane.distance));
+            let first = self.points.len();
+            self.clipper.region(solids, part, piece, &placed, &plane, self.reach, &mut self.points);
+            self.pairs.push(InReach { part: s.part, piece: s.piece, first, end: self.points.len() });
+        }
+    }
+
+    /// Moves the gaps along with a small step to `pose`.
+    pub fn shift(&mut self, step: &Step, pose: &Pose) {
+        let mut deepest = f64::INFINITY;
+        for p in &mut self.points {
+            p.gap += p.normal_w.dot(step.dp + step.dtheta.cross(p.point_w - pose.translation));
+            deepest = deepest.min(p.gap);
+        }
+        if self.penetration > 0.0 {
+            self.penetration = -deepest;
+        }
+    }
+
+    /// The contacts that take place at the proxy, and how many found no room.
+    pub fn formation(&mut self) -> (ContactFormation, u32) {
+        let mut formation = ContactFormation::FREE;
+        let mut dropped = 0;
+        for pair in &self.pairs {
+            let known = &mut self.touching[pair.part as usize * self.pieces + pair.piece as usize];
+            let limit = if *known { LEAVING } else { TOUCHING };
+            let points = &self.points[pair.first..pair.end];
+            self.places.clear();
+            self.places.extend(points.iter().filter(|p| p.gap <= limit).map(|p| p.point_w));
+            *known = !self.places.is_empty();
+            let Some(deepest) = points.iter().min_by(|p, q| p.gap.total_cmp(&q.gap)).filter(|p| p.gap <= limit) else {
+                continue;
+            };
+            convex_hull(&self.places, deepest.normal_w, &mut self.hull);
+            let kind = match (self.hull.len(), deepest.contact) {
+                (0 | 1, BasicContact::TypeC { .. }) => FormationKind::EdgeEdge,
+                (0 | 1, _) => FormationKind::VertexFace,
+                (2, _) => FormationKind::EdgeFace,
+                _ => FormationKind::FaceFace,
+            };
+            formation.kind = formation.kind.max(kind);
+            for p in points.iter().filter(|p| p.gap <= limit) {
+                let kept = formation.push(ContactPoint {
+                    part_a: pair.part,
+                    piece_b: pair.piece,
+                    contact: p.contact,
+                    point_w: p.point_w,
+                    normal_w: p.normal_w,
+                    distance: p.gap,
+                    kind,
+                });
+                dropped += u32::from(!kept);
+            }
+        }
+        (formation, dropped)
+    }
+}

@@ -1,0 +1,306 @@
+//! The contact region of a pair: the two faces in contact, clipped against each other, as basic contacts.
+
+use crate::solid::Solids;
+use cspace::{BasicContact, CFace, EdgeId, FaceId, Polyhedron, World};
+use spatial::{DMat3, DVec3, Pose};
+
+/// A basic contact of the region: one of the paper's K contacts when it takes place, a potential one when it has a gap.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RegionPoint {
+    pub contact: BasicContact,
+    /// App_k, metres, W: on the surface of B.
+    pub point_w: DVec3,
+    /// Unit, axes of W, from B to A.
+    pub normal_w: DVec3,
+    /// Signed distance of A to B at this contact along the normal, metres; `< 0` is penetration.
+    pub gap: f64,
+}
+
+/// The pose of A in the form the geometry wants.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed {
+    pub x: DVec3,
+    pub r: DMat3,
+}
+
+impl Placed {
+    pub fn new(pose: &Pose) -> Self {
+        Self { x: pose.translation, r: pose.rotation_matrix() }
+    }
+
+    pub fn point(&self, p: DVec3) -> DVec3 {
+        self.x + self.r * p
+    }
+}
+
+/// Where an edge of the clipped polygon comes from: position in the ring of A's or of B's face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    A(u16),
+    B(u16),
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    point: DVec3,
+    /// The origin of the edge that leaves this corner.
+    leaving: Side,
+}
+
+/// Scratch for clipping; grows at construction only.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Clipper {
+    subject: Vec<Corner>,
+    result: Vec<Corner>,
+}
+
+/// Contacts closer together than this part of the size are one.
+const SAME_POINT: f64 = 1e-8;
+/// Edges that cross at less than this angle (radians) have no reliable common normal: the face's is used.
+const PARALLEL_EDGES: f64 = 0.02;
+
+impl Clipper {
+    /// Room for the largest faces of the world.
+    pub fn for_world(world: &World) -> Self {
+        let most = |p: &Polyhedron| p.faces().map(|f| p.face_vertices(f).len()).max().unwrap_or(0);
+        let a = world.moving.iter().map(|p| most(p)).max().unwrap_or(0);
+        let b = world.fixed.iter().map(|p| most(&p.polyhedron)).max().unwrap_or(0);
+        // A convex polygon gains at most one corner per clipping line; rounding is allowed as much again.
+        let room = 2 * (a + b) + 8;
+        Self { subject: Vec::with_capacity(room), result: Vec::with_capacity(room) }
+    }
+
+    /// Appends to `out` the contacts of the region between the most nearly parallel faces at `near`, those with a gap of
+    /// up to `reach` metres, as long as `out` has room. Faces inside the assembly of their own body are never chosen,
+    /// and where B's face goes on in another piece there is no border to touch.
+    #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
+    pub fn region(
+        &mut self,
+        solids: &Solids,
+        part: usize,
+        piece: usize,
+        placed: &Placed,
+        near: &CFace,
+        reach: f64,
+        out: &mut Vec<RegionPoint>,
+    ) {
+        let (a, b) = (solids.part(part), solids.piece(piece));
+        let same = SAME_POINT * (a.size() + b.size());
+        let first = out.len();
+        let Some((face_a, face_b)) = most_parallel(solids, part, piece, &placed.r, near) else { return };
+        let plane_b = b.face_plane(face_b);
+        let normal_a = -(placed.r * a.face_plane(face_a).normal);
+        let lean = normal_a.dot(plane_b.normal);
+        if lean > 0.1 {
+            self.clip(a, face_a, b, face_b, placed, same);
+            let ring_a = (a.face_vertices(face_a), a.face_edges(face_a));
+            let ring_b = (b.face_vertices(face_b), b.face_edges(face_b));
+            for k in 0..self.subject.len() {
+                let before = self.subject[(k + self.subject.len() - 1) % self.subject.len()].leaving;
+                let Corner { point, leaving } = self.subject[k];
+                let height = plane_b.signed_distance(point);
+                if height * lean > reach && height > reach {
+                    continue;
+                }
+                let foot = point - plane_b.normal * height;
+                let found = match (before, leaving) {
+                    (Side::A(_), Side::A(i)) => RegionPoint {
+                        contact: BasicContact::TypeB { vertex_a: ring_a.0[i as usize], face_b },
+                        point_w: foot,
+                        normal_w: plane_b.normal,
+                        gap: height,
+                    },
+                    (Side::B(i), Side::B(j)) => {
+                        // The corner that the two sides share; A's ring runs against B's, so they come in either order.
+                        let n = ring_b.0.len();
+                        let (i, j) = (i as usize, j as usize);
+                        let corner = if (i + 1) % n == j { j } else { i };
+                        let at = b.vertex(ring_b.0[corner]);
+                        if i == j || [i, j].iter().any(|s| solids.goes_on_b(piece, face_b, *s, at)) {
+                            continue;
+                        }
+                        RegionPoint {
+                            contact: BasicContact::TypeA { face_a, vertex_b: ring_b.0[corner] },
+                            point_w: at,
+                            normal_w: normal_a,
+                            gap: height * lean,
+                        }
+                    }
+                    (Side::A(i), Side::B(j)) | (Side::B(j), Side::A(i)) => {
+                        if solids.goes_on_b(piece, face_b, j as usize, foot) {
+                            continue;
+                        }
+                        let (edge_a, edge_b) = (ring_a.1[i as usize], ring_b.1[j as usize]);
+                        let (normal_w, gap) = crossing(a, edge_a, b, edge_b, &placed.r, plane_b.normal, height);
+                        RegionPoint { contact: BasicContact::TypeC { edge_a, edge_b }, point_w: foot, normal_w, gap }
+                    }
+                };
+                push(found, reach, same, first, out);
+            }
+        }
+        // Near's own contact, when its features face each other: under rounding the clipping may lose it.
+        if near.distance <= reach && !out[first..].iter().any(|p| p.contact == near.contact) {
+            if let Some(point_w) = facing_point(a, b, placed, near, 1e3 * same) {
+                let p = RegionPoint { contact: near.contact, point_w, normal_w: near.normal_w, gap: near.distance };
+                push(p, reach, same, first, out);
+            }
+        }
+    }
+
+    /// A's face, cut by the sides of B's face (Sutherland and Hodgman 1974), along B's normal; left in `subject`.
+    /// The corners lie on A's face.
+    fn clip(&mut self, a: &Polyhedron, face_a: FaceId, b: &Polyhedron, face_b: FaceId, placed: &Placed, same: f64) {
+        self.subject.clear();
+        for (i, v) in a.face_vertices(face_a).iter().enumerate() {
+            self.subject.push(Corner { point: placed.point(a.vertex(*v)), leaving: Side::A(i as u16) });
+        }
+        let ring_b = b.face_vertices(face_b);
+        let normal = b.face_plane(face_b).normal;
+        for j in 0..ring_b.len() {
+            let start = b.vertex(ring_b[j]);
+            let along = b.vertex(ring_b[(j + 1) % ring_b.len()]) - start;
+            let inward = normal.cross(along);
+            let offset = inward.dot(start);
+            let tolerance = same * along.length();
+            self.result.clear();
+            let n = self.subject.len();
+            for k in 0..n {
+                let (p, q) = (self.subject[k], self.subject[(k + 1) % n]);
+                let (hp, hq) = (inward.dot(p.point) - offset, inward.dot(q.point) - offset);
+                let (p_in, q_in) = (hp >= -tolerance, hq >= -tolerance);
+                let cut = || p.point + (q.point - p.point) * (hp / (hp - hq)).clamp(0.0, 1.0);
+                if self.result.len() + 2 > self.result.capacity() {
+                    break;
+                }
+                match (p_in, q_in) {
+                    (true, true) => self.result.push(p),
+                    (true, false) => {
+                        self.result.push(p);
+                        self.result.push(Corner { point: cut(), leaving: Side::B(j as u16) });
+                    }
+                    (false, true) => self.result.push(Corner { point: cut(), leaving: p.leaving }),
+                    (false, false) => {}
+                }
+            }
+            std::mem::swap(&mut self.subject, &mut self.result);
+            if self.subject.is_empty() {
+                return;
+            }
+        }
+    }
+}
+
+/// Keeps a contact unless it is out of reach, a duplicate, or there is no room. Of two contacts at one place the first stays.
+fn push(p: RegionPoint, reach: f64, same: f64, first: usize, out: &mut Vec<RegionPoint>) {
+    let room = out.len() < out.capacity();
+    if room && p.gap <= reach && !out[first..].iter().any(|o| o.point_w.distance_squared(p.point_w) <= same * same) {
+        out.push(p);
+    }
+}
+
+/// The pair of faces, one of each body, at the features of `near` that are most nearly antiparallel.
+fn most_parallel(solids: &Solids, part: usize, piece: usize, r: &DMat3, near: &CFace) -> Option<(FaceId, FaceId)> {
+    let (a, b) = (solids.part(part), solids.piece(piece));
+    let (one_a, one_b);
+    let (edge_a_faces, edge_b_faces);
+    let (faces_a, faces_b): (&[FaceId], &[FaceId]) = match near.contact {
+        BasicContact::TypeB { vertex_a, face_b } => {
+            one_b = [face_b];
+            (a.vertex_faces(vertex_a), &one_b)
+        }
+        BasicContact::TypeA { face_a, vertex_b } => {
+            one_a = [face_a];
+            (&one_a, b.vertex_faces(vertex_b))
+        }
+        BasicContact::TypeC { edge_a, edge_b } => {
+            (edge_a_faces, edge_b_faces) = (a.edge(edge_a).faces, b.edge(edge_b).faces);
+            (&edge_a_faces, &edge_b_faces)
+        }
+    };
+    let mut best = (f64::INFINITY, None);
+    for i in faces_a.iter().filter(|f| !solids.is_internal_a(part, **f)) {
+        let normal = *r * a.face_plane(*i).normal;
+        for j in faces_b.iter().filter(|f| !solids.is_internal_b(piece, **f)) {
+            let c = b.face_plane(*j).normal.dot(normal);
+            if c < best.0 {
+                best = (c, Some((*i, *j)));
+            }
+        }
+    }
+    best.1
+}
+
+/// Normal and gap of two crossing edges whose vertical distance above B's face is `height`.
+fn crossing(
+    a: &Polyhedron,
+    edge_a: EdgeId,
+    b: &Polyhedron,
+    edge_b: EdgeId,
+    r: &DMat3,
+    normal_b: DVec3,
+    height: f64,
+) -> (DVec3, f64) {
+    let [a0, a1] = a.edge(edge_a).vertices;
+    let [b0, b1] = b.edge(edge_b).vertices;
+    let ua = *r * (a.vertex(a1) - a.vertex(a0));
+    let ub = b.vertex(b1) - b.vertex(b0);
+    let n = ua.cross(ub);
+    let length = n.length();
+    if length <= PARALLEL_EDGES * ua.length() * ub.length() {
+        return (normal_b, height);
+    }
+    let lean = n.dot(normal_b) / length;
+    if lean.abs() < 0.1 {
+        return (normal_b, height);
+    }
+    (n * (lean.signum() / length), height * lean.abs())
+}
+
+/// App of a basic contact on B's side if the two features face each other (within `tolerance` metres), else none.
+pub(crate) fn facing_point(
+    a: &Polyhedron,
+    b: &Polyhedron,
+    placed: &Placed,
+    c: &CFace,
+    tolerance: f64,
+) -> Option<DVec3> {
+    match c.contact {
+        BasicContact::TypeB { vertex_a, face_b } => {
+            let p = placed.point(a.vertex(vertex_a)) - c.normal_w * c.distance;
+            inside_ring(b, face_b, p, tolerance).then_some(p)
+        }
+        BasicContact::TypeA { face_a, vertex_b } => {
+            let p = b.vertex(vertex_b);
+            let seen_from_a = placed.r.transpose() * (p - placed.x);
+            inside_ring(a, face_a, seen_from_a, tolerance).then_some(p)
+        }
+        BasicContact::TypeC { edge_a, edge_b } => {
+            let [a0, a1] = a.edge(edge_a).vertices;
+            let [b0, b1] = b.edge(edge_b).vertices;
+            let (a0, a1) = (placed.point(a.vertex(a0)), placed.point(a.vertex(a1)));
+            let (b0, b1) = (b.vertex(b0), b.vertex(b1));
+            let (ua, ub) = (a1 - a0, b1 - b0);
+            // Parameters of the closest points of the two lines.
+            let n = ua.cross(ub);
+            let nn = n.length_squared();
+            if nn <= 1e-24 * ua.length_squared() * ub.length_squared() {
+                return None;
+            }
+            let s = (b0 - a0).cross(ub).dot(n) / nn;
+            let t = (b0 - a0).cross(ua).dot(n) / nn;
+            let (ts, tt) = (tolerance / ua.length(), tolerance / ub.length());
+            (s >= -ts && s <= 1.0 + ts && t >= -tt && t <= 1.0 + tt).then(|| b0 + ub * t.clamp(0.0, 1.0))
+        }
+    }
+}
+
+/// Whether the foot of `p` on the face's plane lies in the face, or outside by no more than `tolerance` metres.
+fn inside_ring(body: &Polyhedron, face: FaceId, p: DVec3, tolerance: f64) -> bool {
+    let ring = body.face_vertices(face);
+    let normal = body.face_plane(face).normal;
+    (0..ring.len()).all(|j| {
+        let start = body.vertex(ring[j]);
+        let along = body.vertex(ring[(j + 1) % ring.len()]) - start;
+        normal.cross(along).dot(p - start) >= -tolerance * along.length()
+    })
+}

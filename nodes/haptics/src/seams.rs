@@ -1,0 +1,201 @@
+//! Seams between convex pieces of one body: which contacts are artefacts of the cutting.
+
+use cspace::{FaceId, Polyhedron};
+use spatial::DVec3;
+use std::sync::Arc;
+
+/// Points this close to a piece's surface (part of the largest piece) count as on it.
+const ON_SURFACE: f64 = 1e-7;
+/// A normal may lean this far (radians) over a flat seam and still be the normal of the uncut surface.
+const FLAT: f64 = 1e-6;
+
+/// How much of a face lies inside other pieces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Cover {
+    /// None of it: a face of the solid.
+    Open,
+    /// A part of it.
+    Partial,
+    /// All of it: never felt.
+    Internal,
+}
+
+/// Which pieces of a rigid assembly (the whole fixed scene, or the body in the hand) touch or overlap which, found once.
+///
+/// A face of a piece, or a part of it, that lies inside another piece is no surface of the solid, and neither are the
+/// edges and vertices such faces make where the solid is flat or hollow. A contact there is never felt, though its
+/// plane still proves freedom.
+#[derive(Clone, Debug)]
+pub(crate) struct Seams {
+    pieces: Vec<Arc<Polyhedron>>,
+    /// For each piece the pieces that touch or overlap it.
+    neighbors: Vec<Vec<u32>>,
+    /// For each piece the cover of its faces.
+    cover: Vec<Vec<Cover>>,
+    tolerance: f64,
+}
+
+impl Seams {
+    /// Of pieces given in one common frame.
+    pub fn new(pieces: Vec<Arc<Polyhedron>>) -> Self {
+        let size = pieces.iter().map(|p| p.size()).fold(0.0, f64::max);
+        let tolerance = ON_SURFACE * size;
+        let touching = |p: &Polyhedron, q: &Polyhedron| {
+            // A face plane of either that has the other wholly outside proves them apart.
+            let apart = |p: &Polyhedron, q: &Polyhedron| {
+                p.faces().any(|f| {
+                    let plane = p.face_plane(f);
+                    q.corner_ids().all(|v| plane.signed_distance(q.vertex(v)) > 2.0 * tolerance)
+                })
+            };
+            p.center().distance(q.center()) <= p.size() + q.size() + 2.0 * tolerance && !apart(p, q) && !apart(q, p)
+        };
+        let n = pieces.len();
+        let neighbors: Vec<Vec<u32>> = (0..n)
+            .map(|a| (0..n).filter(|&b| b != a && touching(&pieces[a], &pieces[b])).map(|b| b as u32).collect())
+            .collect();
+        let cover = (0..n)
+            .map(|a| {
+                let others = || neighbors[a].iter().map(|&b| &*pieces[b as usize]);
+                pieces[a].faces().map(|f| cover_of(&pieces[a], f, others(), tolerance)).collect()
+            })
+            .collect();
+        Self { pieces, neighbors, cover, tolerance }
+    }
+
+    /// How much of the face lies inside other pieces.
+    pub fn cover(&self, piece: usize, face: FaceId) -> Cover {
+        self.cover[piece][face.index()]
+    }
+
+    /// Whether the place just outside of the face at `point` (a point of the face) lies inside another piece.
+    pub fn is_covered(&self, piece: usize, face: FaceId, point: DVec3) -> bool {
+        let outside = point + self.pieces[piece].face_plane(face).normal * (4.0 * self.tolerance);
+        self.neighbors[piece].iter().any(|&other| self.pieces[other as usize].contains(outside, -self.tolerance))
+    }
+
+    /// Whether the piece borders on others at all: if not, all its contacts are felt.
+    pub fn is_alone(&self, piece: usize) -> bool {
+        self.neighbors[piece].is_empty()
+    }
+
+    /// Whether the face's surface goes on in another piece beyond its side `side` at `point` (a point of that side), flat or
+    /// rising: then the side is no border of the solid.
+    pub fn goes_on(&self, piece: usize, face: FaceId, side: usize, point: DVec3) -> bool {
+        let p = &self.pieces[piece];
+        let ring = p.face_vertices(face);
+        let normal = p.face_plane(face).normal;
+        let along = p.vertex(ring[(side + 1) % ring.len()]) - p.vertex(ring[side]);
+        let outward = along.cross(normal).normalize_or_zero();
+        let beyond = point + (outward - normal) * (8.0 * self.tolerance);
+        self.neighbors[piece].iter().any(|&other| self.pieces[other as usize].contains(beyond, self.tolerance))
+    }
+
+    /// Whether a contact at `point` on the surface of `piece`, with the outward `normal`, both in the pieces' frame, is one
+    /// of the uncut solid: the contact plane must support every piece that the point belongs to.
+    pub fn is_felt(&self, piece: usize, point: DVec3, normal: DVec3) -> bool {
+        self.neighbors[piece].iter().all(|&other| {
+            let q = &self.pieces[other as usize];
+            if !q.contains(point, self.tolerance) {
+                return true;
+            }
+            let top = q.vertex(q.support(normal));
+            normal.dot(top - point) <= FLAT * 2.0 * q.size() + self.tolerance
+        })
+    }
+}
+
+/// Clips the face by each other piece, a little outside of the face, and compares areas.
+fn cover_of<'a>(
+    piece: &Polyhedron,
+    face: FaceId,
+    others: impl Iterator<Item = &'a Polyhedron>,
+    tolerance: f64,
+) -> Cover {
+    let normal = piece.face_plane(face).normal;
+    let ring: Vec<DVec3> = piece.face_vertices(face).iter().map(|v| piece.vertex(*v)).collect();
+    let whole = area(&ring, normal);
+    let mut most = 0.0_f64;
+    for other in others {
+        let mut polygon = ring.clone();
+        for f in other.faces() {
+            let plane = other.face_plane(f);
+            let height = |p: DVec3| plane.signed_distance(p + normal * (4.0 * tolerance)) - tolerance;
+            let mut kept = Vec::with_capacity(polygon.len() + 1);
+            for (k, p) in polygon.iter().enumerate() {
+                let q = polygon[(k + 1) % polygon.len()];
+                let (hp, hq) = (height(*p), height(q));
+                if hp <= 0.0 {
+                    kept.push(*p);
+                }
+                if (hp <= 0.0) != (hq <= 0.0) {
+                    kept.push(*p + (q - *p) * (hp / (hp - hq)));
+                }
+            }
+            polygon = kept;
+            if polygon.is_empty() {
+                break;
+            }
+        }
+        most = most.max(area(&polygon, normal));
+    }
+    if most >= 0.9999 * whole {
+        Cover::Internal
+    } else if most > 1e-6 * whole {
+        Cover::Partial
+    } else {
+        Cover::Open
+    }
+}
+
+fn area(polygon: &[DVec3], normal: DVec3) -> f64 {
+    let Some(first) = polygon.first() else { return 0.0 };
+    0.5 * polygon.windows(2).map(|w| (w[0] - *first).cross(w[1] - *first).dot(normal)).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::cuboid;
+
+    #[test]
+    fn joint_of_two_boxes_is_flat_on_top_and_dead_inside() {
+        // Two boxes side by side: [-1, 0] and [0, 1] in x, top at z = 0.
+        let pieces = vec![
+            Arc::new(cuboid(DVec3::new(-1.0, -1.0, -1.0), DVec3::new(0.0, 1.0, 0.0))),
+            Arc::new(cuboid(DVec3::new(-0.2, -1.0, -1.0), DVec3::new(1.0, 1.0, 0.0))),
+        ];
+        let s = Seams::new(pieces);
+        assert!(!s.is_alone(0));
+        let on_joint = DVec3::new(0.0, 0.1, 0.0);
+        assert!(s.is_felt(0, on_joint, DVec3::Z), "the top goes on across the joint");
+        assert!(!s.is_felt(0, DVec3::new(0.0, 0.1, -0.3), DVec3::X), "the joint face is inside");
+        assert!(!s.is_felt(0, on_joint, DVec3::new(0.1, 0.0, 1.0).normalize()), "the joint edge is flat");
+        assert!(s.is_felt(0, DVec3::new(-1.0, 0.1, 0.0), DVec3::new(-0.1, 0.0, 1.0).normalize()), "a real edge");
+        assert!(s.is_felt(1, DVec3::new(1.0, 0.0, -0.5), DVec3::X), "a real face");
+        let covers: Vec<Cover> = (0..6).map(|f| s.cover(0, FaceId(f))).collect();
+        assert_eq!(covers.iter().filter(|c| **c == Cover::Internal).count(), 1, "{covers:?}");
+        assert_eq!(covers.iter().filter(|c| **c == Cover::Open).count(), 5, "{covers:?}");
+    }
+
+    #[test]
+    fn a_wall_covers_a_part_of_the_floor() {
+        let s = Seams::new(vec![
+            Arc::new(cuboid(DVec3::new(-1.0, -1.0, -1.0), DVec3::new(1.0, 1.0, 0.0))),
+            Arc::new(cuboid(DVec3::new(0.5, -1.0, 0.0), DVec3::new(1.0, 1.0, 1.0))),
+        ]);
+        let covers: Vec<Cover> = (0..6).map(|f| s.cover(0, FaceId(f))).collect();
+        assert_eq!(covers.iter().filter(|c| **c == Cover::Partial).count(), 1, "{covers:?}");
+        let top = FaceId(covers.iter().position(|c| *c == Cover::Partial).unwrap() as u32);
+        assert!(s.is_covered(0, top, DVec3::new(0.7, 0.0, 0.0)) && !s.is_covered(0, top, DVec3::new(0.2, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn pieces_apart_are_alone() {
+        let s = Seams::new(vec![
+            Arc::new(cuboid(DVec3::ZERO, DVec3::ONE)),
+            Arc::new(cuboid(DVec3::new(1.1, 0.0, 0.0), DVec3::new(2.0, 1.0, 1.0))),
+        ]);
+        assert!(s.is_alone(0) && s.is_alone(1));
+    }
+}

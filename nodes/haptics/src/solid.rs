@@ -1,0 +1,177 @@
+//! The two assemblies in contact, with their seams: which contact planes of a pair may be felt.
+
+use crate::region::Placed;
+use crate::seams::{Cover, Seams};
+use cspace::{BasicContact, CFace, EdgeId, FaceId, Polyhedron, World, contact_point, is_applicable};
+use spatial::{DVec3, Pose};
+use std::sync::Arc;
+
+/// The world with the seams of both sides.
+#[derive(Clone, Debug)]
+pub(crate) struct Solids {
+    pub world: Arc<World>,
+    moving: Seams,
+    fixed: Seams,
+}
+
+impl Solids {
+    pub fn new(world: Arc<World>) -> Self {
+        let moving = Seams::new(world.moving.clone());
+        let fixed = Seams::new(world.fixed.iter().map(|p| p.polyhedron.clone()).collect());
+        Self { world, moving, fixed }
+    }
+
+    pub fn part(&self, part: usize) -> &Polyhedron {
+        &self.world.moving[part]
+    }
+
+    pub fn piece(&self, piece: usize) -> &Polyhedron {
+        &self.world.fixed[piece].polyhedron
+    }
+
+    /// Whether both sides of the pair are uncut bodies: then every contact is felt.
+    pub fn is_seamless(&self, part: usize, piece: usize) -> bool {
+        self.moving.is_alone(part) && self.fixed.is_alone(piece)
+    }
+
+    /// Whether the face of A, or of the piece, lies wholly inside its own assembly.
+    pub fn is_internal_a(&self, part: usize, face: FaceId) -> bool {
+        self.moving.cover(part, face) == Cover::Internal
+    }
+
+    /// See [`Solids::is_internal_a`].
+    pub fn is_internal_b(&self, piece: usize, face: FaceId) -> bool {
+        self.fixed.cover(piece, face) == Cover::Internal
+    }
+
+    /// Whether the piece's face goes on beyond its side `side` at `point_w`: see [`Seams::goes_on`].
+    pub fn goes_on_b(&self, piece: usize, face: FaceId, side: usize, point_w: DVec3) -> bool {
+        !self.fixed.is_alone(piece) && self.fixed.goes_on(piece, face, side, point_w)
+    }
+
+    /// Whether the contact is one of the uncut solids. Vertices and edges are judged where they are; a face that is
+    /// covered in part is felt while A's contact or A's middle stands over the open part. (The contact alone does not
+    /// decide: deep in a corner it lies inside the other wall, and still this wall must push.)
+    fn is_felt_plane(&self, part: usize, piece: usize, pose: &Pose, placed: &Placed, c: &CFace) -> bool {
+        let (a, b) = (self.part(part), self.piece(piece));
+        let at = contact_point(c.contact, a, b, pose);
+        let into_a = placed.r.transpose();
+        let seen_from_a = |p: DVec3| into_a * (p - placed.x);
+        match c.contact {
+            BasicContact::TypeB { vertex_a, face_b } => {
+                let face_felt = match self.fixed.cover(piece, face_b) {
+                    Cover::Open => true,
+                    Cover::Internal => false,
+                    Cover::Partial => [at, pose.transform_point(a.center())]
+                        .iter()
+                        .any(|p| !self.fixed.is_covered(piece, face_b, nearest_in_face(b, face_b, *p))),
+                };
+                face_felt
+                    && (self.moving.is_alone(part) || {
+                        self.moving.is_felt(part, a.vertex(vertex_a), -(into_a * c.normal_w))
+                    })
+            }
+            BasicContact::TypeA { face_a, .. } => {
+                let face_felt = match self.moving.cover(part, face_a) {
+                    Cover::Open => true,
+                    Cover::Internal => false,
+                    Cover::Partial => [at, b.center()]
+                        .iter()
+                        .any(|p| !self.moving.is_covered(part, face_a, nearest_in_face(a, face_a, seen_from_a(*p)))),
+                };
+                face_felt && (self.fixed.is_alone(piece) || self.fixed.is_felt(piece, at, c.normal_w))
+            }
+            BasicContact::TypeC { .. } => {
+                (self.fixed.is_alone(piece) || self.fixed.is_felt(piece, at, c.normal_w))
+                    && (self.moving.is_alone(part) || {
+                        let on_a = seen_from_a(at + c.normal_w * c.distance);
+                        self.moving.is_felt(part, on_a, -(into_a * c.normal_w))
+                    })
+            }
+        }
+    }
+
+    /// The plane of the pair that counts: `near` itself where it is felt; else the felt C-face with the largest signed
+    /// distance among the face contacts and, around the best of them, the edge contacts. None if nothing is felt.
+    pub fn felt_plane(&self, part: usize, piece: usize, pose: &Pose, placed: &Placed, near: &CFace) -> Option<CFace> {
+        if self.is_seamless(part, piece) || self.is_felt_plane(part, piece, pose, placed, near) {
+            return Some(*near);
+        }
+        let (a, b) = (self.part(part), self.piece(piece));
+        let mut best: Option<CFace> = None;
+        let mut offer = |c: BasicContact| {
+            let face = CFace::at(c, a, b, pose);
+            if best.is_none_or(|o| face.distance > o.distance) && self.is_felt_plane(part, piece, pose, placed, &face) {
+                best = Some(face);
+            }
+        };
+        for face_b in b.faces() {
+            let vertex_a = a.support(-(placed.r.transpose() * b.face_plane(face_b).normal));
+            offer(BasicContact::TypeB { vertex_a, face_b });
+        }
+        for face_a in a.faces() {
+            let vertex_b = b.support(-(placed.r * a.face_plane(face_a).normal));
+            offer(BasicContact::TypeA { face_a, vertex_b });
+        }
+        // Edge contacts: walk from the best face contact, and from Near's own features, over adjacent edges.
+        for start in [best.map(|f| f.contact), Some(near.contact)].into_iter().flatten() {
+            let mut at = start;
+            for _ in 0..4 {
+                let from = best;
+                for edge_a in edges_of_a(a, &at) {
+                    for edge_b in edges_of_b(b, &at) {
+                        let c = BasicContact::TypeC { edge_a: *edge_a, edge_b: *edge_b };
+                        if is_applicable(c, a, b, pose.rotation) {
+                            let face = CFace::at(c, a, b, pose);
+                            if best.is_none_or(|o| face.distance > o.distance)
+                                && self.is_felt_plane(part, piece, pose, placed, &face)
+                            {
+                                best = Some(face);
+                            }
+                        }
+                    }
+                }
+                match best {
+                    Some(face) if best != from => at = face.contact,
+                    _ => break,
+                }
+            }
+        }
+        best
+    }
+}
+
+fn edges_of_a<'a>(a: &'a Polyhedron, c: &BasicContact) -> &'a [EdgeId] {
+    match *c {
+        BasicContact::TypeA { face_a, .. } => a.face_edges(face_a),
+        BasicContact::TypeB { vertex_a, .. } => a.vertex_edges(vertex_a),
+        BasicContact::TypeC { edge_a, .. } => a.edge_edges(edge_a),
+    }
+}
+
+fn edges_of_b<'b>(b: &'b Polyhedron, c: &BasicContact) -> &'b [EdgeId] {
+    match *c {
+        BasicContact::TypeA { vertex_b, .. } => b.vertex_edges(vertex_b),
+        BasicContact::TypeB { face_b, .. } => b.face_edges(face_b),
+        BasicContact::TypeC { edge_b, .. } => b.edge_edges(edge_b),
+    }
+}
+
+/// The foot of `p` on the face's plane, drawn into the face side by side: near its nearest point, and inside.
+fn nearest_in_face(body: &Polyhedron, face: FaceId, p: DVec3) -> DVec3 {
+    let plane = body.face_plane(face);
+    let ring = body.face_vertices(face);
+    let middle = ring.iter().map(|v| body.vertex(*v)).sum::<DVec3>() / ring.len() as f64;
+    let foot = p - plane.normal * plane.signed_distance(p);
+    // Towards the middle, as far as the side asks that cuts most.
+    let mut share = 1.0_f64;
+    for j in 0..ring.len() {
+        let start = body.vertex(ring[j]);
+        let outward = (body.vertex(ring[(j + 1) % ring.len()]) - start).cross(plane.normal);
+        let (out, inside) = (outward.dot(foot - start), -outward.dot(middle - start));
+        if out > 0.0 {
+            share = share.min(inside / (inside + out));
+        }
+    }
+    middle + (foot - middle) * share
+}

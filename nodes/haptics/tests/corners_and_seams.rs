@@ -1,0 +1,97 @@
+//! Several obstacles and several pieces of one: no doubled stiffness, no felt seams.
+
+mod support;
+
+use haptics::{Gains, LawKind, RenderLaw, Renderer};
+use spatial::DVec3;
+use support::{block, cuboid, mm, peg_in_hole, pose, world};
+
+const LAWS: [LawKind; 4] = [LawKind::Paper, LawKind::Pstar, LawKind::Blended, LawKind::Proxy];
+
+fn gains(law: LawKind) -> Gains {
+    Gains { law, ..Gains::default() }
+}
+
+#[test]
+fn corner_of_floor_and_wall_pulls_with_the_root_of_two() {
+    let w = world(
+        block(mm(10.0, 10.0, 10.0)),
+        vec![
+            cuboid(mm(-50.0, -50.0, -20.0), mm(50.0, 50.0, 0.0)),
+            cuboid(mm(20.0, -50.0, -20.0), mm(50.0, 50.0, 50.0)),
+        ],
+    );
+    for law in LAWS {
+        let mut r = Renderer::new(w.clone());
+        let mut out = r.render(&pose(10.0, 0.0, 10.0, 0.0, 0.0, 0.0), &gains(law), 1e-3);
+        assert_eq!(out.wrench.force, DVec3::ZERO);
+        for i in 1..=100 {
+            let s = f64::from(i) / 100.0;
+            out = r.render(&pose(10.0 + 6.0 * s, 0.0, 10.0 - 6.0 * s, 0.0, 0.0, 0.0), &gains(law), 1e-3);
+        }
+        // One millimetre into each at 1 N/mm.
+        assert!((out.wrench.force - DVec3::new(-1.0, 0.0, 1.0)).length() < 1e-9, "{law:?} {}", out.wrench.force);
+        assert!((out.wrench.force.length() - 2f64.sqrt()).abs() < 1e-9);
+        assert!((out.proxy.translation - mm(15.0, 0.0, 5.0)).length() < 1e-9, "{law:?}");
+    }
+}
+
+#[test]
+fn peg_on_two_walls_and_the_bottom_feels_each_once() {
+    for law in LAWS {
+        let mut r = Renderer::new(peg_in_hole());
+        let mut out = r.render(&pose(0.0, 0.0, 21.0, 0.0, 0.0, 0.0), &gains(law), 1e-3);
+        for i in 1..=400 {
+            let s = f64::from(i) / 400.0;
+            // 0.5 mm into the walls, 1 mm into the bottom.
+            let p = pose((0.125 + 0.5) * s, (0.105 + 0.5) * s, 21.0 - 32.0 * s, 0.0, 0.0, 0.0);
+            out = r.render(&p, &gains(law), 1e-3);
+        }
+        let expected = DVec3::new(-0.5, -0.5, 1.0);
+        assert!((out.wrench.force - expected).length() < 1e-9, "{law:?} {}", out.wrench.force);
+    }
+}
+
+/// A box pushed into and dragged and rocked over a floor, by every law.
+fn over_the_floor(w: &std::sync::Arc<cspace::World>, law: LawKind, flat: bool) -> Vec<spatial::Wrench> {
+    let mut r = Renderer::new(w.clone());
+    r.render(&pose(-12.0, 1.0, 8.0, 0.0, 0.0, 0.0), &gains(law), 1e-3);
+    (0..3000)
+        .map(|i| {
+            let s = f64::from(i) * 1e-3;
+            let tilt = if flat { 0.0 } else { 0.05 * (7.0 * s).sin() };
+            let p = pose(-12.0 + 8.0 * s, 1.0 + (3.0 * s).sin(), 4.0 + (5.0 * s).cos(), tilt, 0.7 * tilt, 0.3 * s);
+            r.render(&p, &gains(law), 1e-3).wrench
+        })
+        .collect()
+}
+
+#[test]
+fn floor_cut_into_pieces_feels_like_the_whole_floor() {
+    let tool = || block(mm(10.0, 8.0, 9.0));
+    let piece = |from: f64, to: f64| cuboid(mm(from, -40.0, -20.0), mm(to, 40.0, 0.0));
+    let whole = world(tool(), vec![piece(-40.0, 40.0)]);
+    let cuts = [
+        world(tool(), vec![piece(-40.0, 0.0), piece(0.0, 40.0)]),
+        world(tool(), vec![piece(-40.0, 3.0), piece(-2.0, 40.0)]),
+        world(tool(), vec![piece(-40.0, -4.0), piece(-5.0, 2.0), piece(2.0, 40.0)]),
+    ];
+    for law in LAWS {
+        for flat in [true, false] {
+            let expected = over_the_floor(&whole, law, flat);
+            let peak = expected.iter().map(|w| w.force.length()).fold(0.0, f64::max);
+            assert!(peak > 1.0);
+            for (k, cut) in cuts.iter().enumerate() {
+                let found = over_the_floor(cut, law, flat);
+                for (i, (f, e)) in found.iter().zip(&expected).enumerate() {
+                    let df = (f.force - e.force).length();
+                    assert!(df < 1e-6, "{law:?} flat {flat} cut {k} tick {i}: force {} for {}", f.force, e.force);
+                    if law == LawKind::Proxy || law == LawKind::Pstar {
+                        let dt = (f.torque - e.torque).length();
+                        assert!(dt < 1e-6, "{law:?} flat {flat} cut {k} tick {i}: {} for {}", f.torque, e.torque);
+                    }
+                }
+            }
+        }
+    }
+}
