@@ -51,10 +51,15 @@ impl LatencyHistogram {
 
     /// Becomes a copy of `other`.
     pub fn copy_from(&mut self, other: &Self) {
-        self.counts.reset();
+        self.clear();
+        self.add(other);
+    }
+
+    /// Takes `other`'s times in as well.
+    pub fn add(&mut self, other: &Self) {
         // Every histogram here has the same bounds, so that this neither fails nor resizes.
         let _ = self.counts.add(&other.counts);
-        self.max_ns = other.max_ns;
+        self.max_ns = self.max_ns.max(other.max_ns);
     }
 
     /// The figures so far.

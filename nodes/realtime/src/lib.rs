@@ -4,6 +4,7 @@
 mod cadence;
 mod clock;
 mod histogram;
+mod idle;
 mod latest;
 mod ring;
 mod thread_setup;

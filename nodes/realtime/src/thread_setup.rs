@@ -1,3 +1,4 @@
+use crate::idle::stay_awake;
 use rustix::mm::{MlockAllFlags, mlockall};
 use rustix::thread::{CpuSet, sched_setaffinity};
 use serde::{Deserialize, Serialize};
@@ -48,13 +49,15 @@ pub struct GrantReport {
     pub affinity: Grant,
     /// Locked memory.
     pub memory: Grant,
+    /// Processors kept out of slow idle states; asked for with `SCHED_FIFO`.
+    pub idle: Grant,
 }
 
 impl GrantReport {
     /// True if nothing that was asked for was refused.
     #[must_use]
     pub fn all_granted(&self) -> bool {
-        [&self.scheduling, &self.affinity, &self.memory].iter().all(|g| !matches!(g, Grant::Refused { .. }))
+        [&self.scheduling, &self.affinity, &self.memory, &self.idle].iter().all(|g| !matches!(g, Grant::Refused { .. }))
     }
 }
 
@@ -75,7 +78,8 @@ impl ThreadSetup {
         touch_stack();
         let affinity = if self.cpu < 0 { Grant::NotAsked } else { pin(self.cpu as usize) };
         let scheduling = if self.priority == 0 { Grant::NotAsked } else { fifo(self.priority) };
-        GrantReport { scheduling, affinity, memory }
+        let idle = if self.priority == 0 { Grant::NotAsked } else { stay_awake() };
+        GrantReport { scheduling, affinity, memory, idle }
     }
 }
 
@@ -141,7 +145,8 @@ impl fmt::Display for Grant {
 
 impl fmt::Display for GrantReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "SCHED_FIFO {}; affinity {}; locked memory {}", self.scheduling, self.affinity, self.memory)
+        let Self { scheduling, affinity, memory, idle } = self;
+        write!(f, "SCHED_FIFO {scheduling}; affinity {affinity}; locked memory {memory}; no slow idle states {idle}")
     }
 }
 
