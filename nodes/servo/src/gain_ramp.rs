@@ -1,0 +1,69 @@
+use haptics::Gains;
+
+/// Time constant with which gains follow a change, s.
+const TIME: f64 = 0.05;
+/// Below this share of the target the rest is taken in one step, so that a ramp ends.
+const NEAR: f64 = 1e-6;
+
+/// Lets gains that are changed while it runs come in smoothly. The law and the passivity switch change at once: the
+/// renderer passes from one law to another by itself.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GainRamp {
+    current: Option<Gains>,
+}
+
+impl GainRamp {
+    /// The gains of this tick, `dt` seconds after the last.
+    pub fn step(&mut self, target: &Gains, dt: f64) -> Gains {
+        let Some(mut g) = self.current else {
+            self.current = Some(*target);
+            return *target;
+        };
+        if g != *target {
+            let share = dt / (TIME + dt);
+            let t = target;
+            for (value, to) in [
+                (&mut g.stiffness, t.stiffness),
+                (&mut g.damping, t.damping),
+                (&mut g.rotation_stiffness, t.rotation_stiffness),
+                (&mut g.rotation_damping, t.rotation_damping),
+                (&mut g.blend_depth, t.blend_depth),
+                (&mut g.max_force, t.max_force),
+                (&mut g.max_torque, t.max_torque),
+                (&mut g.friction_static, t.friction_static),
+                (&mut g.friction_kinetic, t.friction_kinetic),
+                (&mut g.proxy_speed, t.proxy_speed),
+            ] {
+                let step = (to - *value) * share;
+                // Infinite is a value of its own.
+                let finite = step.is_finite();
+                *value = if finite && (to - *value).abs() > NEAR * to.abs() { *value + step } else { to };
+            }
+            (g.law, g.passivity, g.ramp_time) = (t.law, t.passivity, t.ramp_time);
+            (g.max_force_rate, g.max_torque_rate) = (t.max_force_rate, t.max_torque_rate);
+            self.current = Some(g);
+        }
+        g
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gains_arrive_exactly_and_without_a_jump() {
+        let mut ramp = GainRamp::default();
+        let from = Gains { proxy_speed: f64::INFINITY, ..Default::default() };
+        assert_eq!(ramp.step(&from, 1e-3), from, "the first ones hold from the start");
+        let to = Gains { stiffness: 3000.0, max_force: 1.0, proxy_speed: 1.0, ..from };
+        let mut last = from;
+        for _ in 0..1000 {
+            let now = ramp.step(&to, 1e-3);
+            assert!((now.stiffness - last.stiffness).abs() <= 2000.0 * 0.02);
+            assert!(now.stiffness >= last.stiffness && now.max_force <= last.max_force);
+            last = now;
+        }
+        assert_eq!(last, to);
+    }
+}

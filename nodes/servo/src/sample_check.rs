@@ -1,0 +1,126 @@
+use crate::Health;
+use device::Sample;
+use spatial::Stamp;
+
+/// Looks at samples before anything else does.
+#[derive(Clone, Copy, Debug)]
+pub struct SampleCheck {
+    timeout_ns: i64,
+    last: Option<Sample>,
+}
+
+/// What a sample is worth.
+#[derive(Clone, Copy, Debug)]
+pub struct Checked {
+    /// The newest good sample, which may be an older one; `None` before the first.
+    pub sample: Option<Sample>,
+    /// Whether it is new in this tick.
+    pub fresh: bool,
+    /// What is wrong, if anything.
+    pub health: Health,
+}
+
+impl SampleCheck {
+    /// A sample is stale when it is older than `timeout` seconds.
+    #[must_use]
+    pub fn new(timeout: f64) -> Self {
+        Self { timeout_ns: (timeout * 1e9) as i64, last: None }
+    }
+
+    /// Checks the newest sample at time `now`.
+    pub fn check(&mut self, sample: &Sample, now: Stamp) -> Checked {
+        let mut health = Health::GOOD;
+        if !sample.connected {
+            health.set(Health::DISCONNECTED);
+        }
+        let finite = sample.pose.is_valid() && (!sample.has_twist || sample.twist.is_finite());
+        if sample.sequence != 0 && !finite {
+            health.set(Health::INVALID);
+        }
+        // After a silence anything is newer: the device's clock may have started anew.
+        let silent = self.is_stale(now);
+        let usable = sample.sequence != 0 && finite && sample.connected;
+        let again = self.last.is_some_and(|s| s == *sample);
+        let fresh = usable && !again && (silent || self.is_newer(sample, &mut health));
+        if fresh {
+            self.last = Some(*sample);
+        }
+        if self.is_stale(now) {
+            health.set(Health::STALE);
+        }
+        Checked { sample: self.last, fresh, health }
+    }
+
+    /// A stamp far ahead is as little to be trusted as one far behind.
+    fn is_stale(&self, now: Stamp) -> bool {
+        let age_ns = |s: Sample| now.0.saturating_sub(s.stamp.0).saturating_abs();
+        self.last.is_none_or(|s| age_ns(s) > self.timeout_ns)
+    }
+
+    /// The same sample again is normal where the servo is faster than the device; a sample that goes back in time, or
+    /// another one under the same number, is not.
+    fn is_newer(&self, sample: &Sample, health: &mut Health) -> bool {
+        let Some(last) = &self.last else { return true };
+        if sample.stamp > last.stamp {
+            if sample.sequence == last.sequence {
+                health.set(Health::SEQUENCE);
+            }
+            // A lower number under a later stamp: the device started again.
+            return true;
+        }
+        if sample.stamp < last.stamp || sample.sequence != last.sequence {
+            health.set(Health::SEQUENCE);
+        }
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spatial::{DQuat, DVec3, Pose};
+
+    fn sample(sequence: u64, ms: i64) -> Sample {
+        Sample { sequence, stamp: Stamp(ms * 1_000_000), connected: true, ..Default::default() }
+    }
+
+    fn at(ms: i64) -> Stamp {
+        Stamp(ms * 1_000_000)
+    }
+
+    #[test]
+    fn a_sample_goes_stale_and_comes_back() {
+        let mut check = SampleCheck::new(0.01);
+        assert_eq!(check.check(&Sample::default(), at(0)).health, Health::STALE | Health::DISCONNECTED);
+        assert_eq!(check.check(&sample(1, 1), at(1)).health, Health::GOOD);
+        assert_eq!(check.check(&sample(1, 1), at(11)).health, Health::GOOD);
+        assert_eq!(check.check(&sample(1, 1), at(12)).health, Health::STALE);
+        assert_eq!(check.check(&sample(2, 12), at(12)).health, Health::GOOD);
+        assert_eq!(check.check(&sample(3, 99), at(13)).health, Health::STALE, "a stamp far ahead");
+    }
+
+    #[test]
+    fn out_of_order_duplicate_and_garbage_are_told_apart_and_not_used() {
+        let mut check = SampleCheck::new(0.01);
+        check.check(&sample(5, 5), at(5));
+        let old = check.check(&sample(4, 4), at(6));
+        assert!(old.health == Health::SEQUENCE && !old.fresh && old.sample.unwrap().sequence == 5);
+        assert_eq!(check.check(&sample(6, 5), at(6)).health, Health::SEQUENCE);
+        let restarted = check.check(&sample(1, 7), at(7));
+        assert!(restarted.fresh && restarted.health == Health::GOOD);
+        let nan = Sample { pose: Pose::new(DVec3::NAN, DQuat::IDENTITY), ..sample(2, 8) };
+        let got = check.check(&nan, at(8));
+        assert!(got.health == Health::INVALID && got.sample.unwrap().sequence == 1);
+        let long = Sample { pose: Pose::new(DVec3::ZERO, DQuat::from_xyzw(0.0, 0.0, 0.0, 1.1)), ..sample(2, 8) };
+        assert_eq!(check.check(&long, at(8)).health, Health::INVALID);
+        let gone = Sample { connected: false, ..sample(3, 9) };
+        assert_eq!(check.check(&gone, at(9)).health, Health::DISCONNECTED);
+    }
+
+    #[test]
+    fn extreme_stamps_do_not_overflow() {
+        let mut check = SampleCheck::new(0.01);
+        check.check(&Sample { stamp: Stamp(i64::MIN), ..sample(1, 0) }, Stamp(i64::MAX));
+        assert!(check.check(&Sample { stamp: Stamp(i64::MAX), ..sample(2, 0) }, Stamp(i64::MIN)).health.any(Health::STALE));
+    }
+}
