@@ -1,20 +1,20 @@
 //! One tick as a pure function, TickRecord, the loop, configuration.
 
+mod aligned_device;
 mod commands;
 pub mod config;
-mod aligned_device;
 mod gain_ramp;
-mod mapping;
-mod motion;
-mod output;
-mod sample_check;
-mod tick;
 mod health;
 mod loop_status;
+mod mapping;
+mod motion;
 mod operator_scene;
+mod output;
 mod record;
+mod sample_check;
 mod servo_handle;
 mod servo_loop;
+mod tick;
 
 pub use aligned_device::AlignedDevice;
 pub use commands::Commands;

@@ -121,6 +121,8 @@ mod tests {
     fn extreme_stamps_do_not_overflow() {
         let mut check = SampleCheck::new(0.01);
         check.check(&Sample { stamp: Stamp(i64::MIN), ..sample(1, 0) }, Stamp(i64::MAX));
-        assert!(check.check(&Sample { stamp: Stamp(i64::MAX), ..sample(2, 0) }, Stamp(i64::MIN)).health.any(Health::STALE));
+        assert!(
+            check.check(&Sample { stamp: Stamp(i64::MAX), ..sample(2, 0) }, Stamp(i64::MIN)).health.any(Health::STALE)
+        );
     }
 }
