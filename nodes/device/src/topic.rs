@@ -35,7 +35,7 @@ pub struct TopicPort {
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Message {
-    /// Counts every message, good or not.
+    /// Counts poses that were taken.
     arrivals: u64,
     sequence: u64,
     stamp: Stamp,
@@ -55,12 +55,13 @@ pub fn topic_device(spec: DeviceSpec, config: TopicConfig) -> (TopicDevice, Topi
 
 impl TopicPort {
     /// A pose came, measured at `stamp` by the sender's clock (`Stamp(0)` if it does not say). One that is not newer than
-    /// the last is not taken: the sample repeats with a sequence number that goes back, so that the tick reports it.
+    /// the last is not taken: the sample repeats, as old as it is, with a sequence number that goes back, so that the tick
+    /// reports it.
     pub fn pose(&mut self, pose: Pose, stamp: Stamp) {
-        self.newest.arrivals += 1;
         let unstamped = stamp == Stamp(0) || self.newest.stamp == Stamp(0);
         if unstamped || stamp > self.newest.stamp {
-            self.newest = Message { sequence: self.newest.sequence + 1, stamp, pose, ..self.newest };
+            let Message { arrivals, sequence, .. } = self.newest;
+            self.newest = Message { arrivals: arrivals + 1, sequence: sequence + 1, stamp, pose, ..self.newest };
             self.incoming.write(self.newest);
         } else {
             self.out_of_order += 1;
@@ -167,10 +168,11 @@ mod tests {
         let (mut device, mut port) = pair(false);
         port.pose(at(1.0), Stamp(10));
         port.pose(at(2.0), Stamp(20));
+        assert_eq!(device.read(Stamp(50)).sequence, 2);
         for stale in [20, 15] {
             port.pose(at(9.0), Stamp(stale));
             let sample = device.read(Stamp(100));
-            assert_eq!((sample.sequence, sample.pose), (1, at(2.0)));
+            assert_eq!((sample.sequence, sample.stamp, sample.pose), (1, Stamp(50), at(2.0)));
         }
         port.pose(at(3.0), Stamp(30));
         let sample = device.read(Stamp(101));
