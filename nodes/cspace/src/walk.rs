@@ -70,6 +70,7 @@ struct Crossing {
     a_at_b1: usize,
     /// Which end of B's arc lies on the side of A's second vertex.
     b_at_a1: usize,
+    /// Direction of A's edge with the tie break: its side of parallel edges is never a matter of rounding.
     dir_a: DVec3,
 }
 
@@ -223,14 +224,14 @@ impl<'a> Placed<'a> {
             return None;
         }
         // The tie break decides, the true directions give the plane: but not where they are parallel.
-        let dir_a = self.r * rod_a.dir;
-        let p_true = n.map(|n| n.dot(dir_a));
+        let straight = self.r * rod_a.dir;
+        let p_true = n.map(|n| n.dot(straight));
         if p_true[0] * p_true[1] < 0.0 && (p_true[0] - p_true[1]).abs() > 1e-9 {
             normal = n[0] * p_true[1].abs() + n[1] * p_true[0].abs();
         }
         let a_at_b1 = usize::from(q[1] > 0.0);
         let b_at_a1 = usize::from(p[1] < 0.0);
-        Some(Crossing { normal: normal.normalize(), arc_a, a_at_b1, b_at_a1, dir_a })
+        Some(Crossing { normal: normal.normalize(), arc_a, a_at_b1, b_at_a1, dir_a: turned })
     }
 
     #[inline]
