@@ -4,11 +4,14 @@
 //! executables in `src/bin` put them together.
 
 pub mod convert;
+pub mod device_node;
 pub mod failure;
 pub mod follower;
+pub mod follower_node;
 mod host;
 mod inbox;
 pub mod parameters;
+pub mod pictures;
 pub mod qos;
 pub mod recorder;
 pub mod servo_node;

@@ -4,5 +4,5 @@ mod options;
 mod session;
 mod tick_count;
 
-pub use options::RecorderOptions;
+pub use options::{RecorderOptions, absolute_name};
 pub use session::{Recorder, Summary};

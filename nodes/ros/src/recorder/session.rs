@@ -94,6 +94,9 @@ impl Recorder {
             while let Some(bytes) = topic.inbox.take() {
                 came = true;
                 topic.count += 1;
+                if topic.count == 1 {
+                    host.say(&format!("recording {name}"));
+                }
                 if topic.carries_ticks
                     && let Ok(batch) = bag::cdr::decode::<TickBatch>(&bytes)
                 {

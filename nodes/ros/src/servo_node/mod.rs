@@ -1,7 +1,18 @@
 //! The servo as a node: its topics, services and parameters around the loop that runs on a thread of its own.
 
 mod batch;
+mod contact_events;
+mod drivers;
+mod due;
+mod pose_file;
+mod setup;
+mod topic_link;
 mod topics;
 
 pub use batch::Batcher;
+pub use contact_events::ContactEvents;
+pub use drivers::open_local;
+pub use due::Due;
+pub use setup::{apply, declared, scene_file};
+pub use topic_link::TopicLink;
 pub use topics::{Frames, ServoTopics};

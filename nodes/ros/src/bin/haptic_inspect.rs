@@ -1,0 +1,42 @@
+//! ROS 2 node `haptic_inspect`: draws a servo's physical space and C-space with rerun, to a file or a running viewer.
+
+use cspace_haptics::parameters::ParameterServer;
+use cspace_haptics::pictures::{PictureOptions, Pictures};
+use cspace_haptics::{Host, Outcome, failure};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+const USAGE: &str = "haptic_inspect: draws a haptic servo's physical space and C-space with rerun.\n\
+    Parameters: output (a .rrd file), viewer (draw in a running viewer), address (its HOST:PORT), servo, scene.";
+/// After the signal: ticks on their way are waited for, as long as they come, at most this long.
+const LAST_WAIT: Duration = Duration::from_secs(2);
+const QUIET: Duration = Duration::from_millis(150);
+/// What a sink may take to swallow the rest.
+const FLUSH: Duration = Duration::from_secs(10);
+
+fn main() -> ExitCode {
+    failure::run(body)
+}
+
+fn body() -> Outcome<()> {
+    let mut host = Host::start("haptic_inspect", USAGE)?;
+    let mut parameters = ParameterServer::new(&mut host.node, PictureOptions::declared())?;
+    let namespace = host.node.namespace()?;
+    let options = PictureOptions::from_parameters(&parameters, &namespace)?;
+    let mut pictures = Pictures::new(&mut host, options)?;
+    host.say_ready();
+    while !host.stopped() {
+        pictures.turn(&mut host, Duration::from_millis(20))?;
+        parameters.serve(host.now(), &mut |_| Ok(()))?;
+    }
+    let end = Instant::now();
+    let mut last = end;
+    while end.elapsed() < LAST_WAIT && last.elapsed() < QUIET {
+        if pictures.turn(&mut host, Duration::from_millis(10))? {
+            last = Instant::now();
+        }
+    }
+    let said = pictures.finish(FLUSH)?;
+    host.say(&said);
+    Ok(())
+}
