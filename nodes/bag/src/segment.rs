@@ -1,0 +1,238 @@
+use crate::FeatureBook;
+use crate::principal_contact::{PrincipalContact, principal_contacts};
+use haptics::FormationKind;
+use servo::TickRecord;
+use spatial::Stamp;
+
+/// When a change of contact counts as one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SegmentOptions {
+    /// A state that lasts less is none, s.
+    pub debounce: f64,
+    /// A contact begins once it is this deep, metres; it ends when it is gone.
+    pub min_depth: f64,
+}
+
+impl Default for SegmentOptions {
+    fn default() -> Self {
+        Self { debounce: 0.02, min_depth: 1e-6 }
+    }
+}
+
+/// A stretch of time in one contact state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Segment {
+    /// Counts segments from 0.
+    pub index: u64,
+    /// Its first tick.
+    pub begin: Stamp,
+    /// The first tick behind it; of a segment that lasts, its newest tick.
+    pub end: Stamp,
+    /// The highest of the principal contacts.
+    pub kind: FormationKind,
+    /// The principal contacts in a fixed order: the state's name.
+    pub contacts: Vec<PrincipalContact>,
+    /// Force, torque, work, depth.
+    pub statistics: Statistics,
+}
+
+impl Segment {
+    /// The principal contacts as one text, `|` between them; `free` if there is none.
+    #[must_use]
+    pub fn label(&self) -> String {
+        if self.contacts.is_empty() {
+            return "free".to_owned();
+        }
+        self.contacts.iter().map(ToString::to_string).collect::<Vec<_>>().join("|")
+    }
+
+    /// Duration, s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        (self.end.0 - self.begin.0) as f64 * 1e-9
+    }
+}
+
+/// What a hand felt in a state; of the law's wrench, torque about A's origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Ticks in the state.
+    pub ticks: u64,
+    /// Their time, s.
+    pub time: f64,
+    /// Integral of the force's norm, N.s; over `time` it is the mean.
+    pub force_time: f64,
+    /// Largest norm of the force, N.
+    pub max_force: f64,
+    /// Integral of the torque's norm, N.m.s.
+    pub torque_time: f64,
+    /// Largest norm of the torque, N.m.
+    pub max_torque: f64,
+    /// Largest depth, metres.
+    pub max_depth: f64,
+    /// Work that the hand has done against the wrench, J; `< 0` where the contact gave energy back.
+    pub work: f64,
+}
+
+impl Statistics {
+    /// Mean norm of the force over time, N.
+    #[must_use]
+    pub fn mean_force(&self) -> f64 {
+        if self.time > 0.0 { self.force_time / self.time } else { 0.0 }
+    }
+
+    /// Mean norm of the torque over time, N.m.
+    #[must_use]
+    pub fn mean_torque(&self) -> f64 {
+        if self.time > 0.0 { self.torque_time / self.time } else { 0.0 }
+    }
+
+    fn add(&mut self, tick: &TickRecord) {
+        let (dt, wrench) = (tick.input.dt.max(0.0), &tick.law_wrench);
+        let (force, torque) = (wrench.force.length(), wrench.torque.length());
+        self.ticks += 1;
+        self.time += dt;
+        self.force_time += force * dt;
+        self.torque_time += torque * dt;
+        self.max_force = self.max_force.max(force);
+        self.max_torque = self.max_torque.max(torque);
+        self.max_depth = self.max_depth.max(tick.depth);
+        self.work -= wrench.power(&tick.twist) * dt;
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.ticks += other.ticks;
+        self.time += other.time;
+        self.force_time += other.force_time;
+        self.torque_time += other.torque_time;
+        self.max_force = self.max_force.max(other.max_force);
+        self.max_torque = self.max_torque.max(other.max_torque);
+        self.max_depth = self.max_depth.max(other.max_depth);
+        self.work += other.work;
+    }
+}
+
+/// A change of state that has been confirmed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// The state that is over; `None` at the very beginning.
+    pub ended: Option<Segment>,
+    /// The state that began, `debounce` ago.
+    pub began: Segment,
+}
+
+/// Cuts a run into contact states while it goes on: a tick in, a confirmed change out.
+///
+/// A state counts once it has lasted for the debounce time; it then begins where it was first seen without a break. What
+/// flickers in between belongs to the old state if that comes back, else to none.
+#[derive(Clone, Debug)]
+pub struct Segmenter {
+    options: SegmentOptions,
+    book: Option<FeatureBook>,
+    current: Option<Segment>,
+    candidate: Option<Segment>,
+    /// The first tick that was not in the current state since it was seen last.
+    left: Option<Stamp>,
+    /// What happened since then, but for the candidate.
+    between: Statistics,
+    /// Contacts of the last tick.
+    held: Vec<PrincipalContact>,
+    next_index: u64,
+}
+
+impl Segmenter {
+    /// A segmenter; with the scene's geometry faces that lie in one plane count as one.
+    #[must_use]
+    pub fn new(options: SegmentOptions, book: Option<FeatureBook>) -> Self {
+        Self {
+            options,
+            book,
+            current: None,
+            candidate: None,
+            left: None,
+            between: Statistics::default(),
+            held: Vec::new(),
+            next_index: 0,
+        }
+    }
+
+    /// The state that lasts, if one was confirmed.
+    #[must_use]
+    pub fn current(&self) -> Option<&Segment> {
+        self.current.as_ref()
+    }
+
+    /// Takes in the next tick.
+    pub fn push(&mut self, tick: &TickRecord) -> Option<Change> {
+        let contacts = self.contacts(tick);
+        let stamp = tick.input.stamp;
+        if let Some(current) = self.current.as_mut().filter(|c| c.contacts == contacts) {
+            // Back again: what flickered was part of it.
+            current.statistics.merge(&std::mem::take(&mut self.between));
+            if let Some(candidate) = self.candidate.take() {
+                current.statistics.merge(&candidate.statistics);
+            }
+            current.statistics.add(tick);
+            current.end = stamp;
+            self.left = None;
+            return None;
+        }
+        self.left.get_or_insert(stamp);
+        if self.candidate.as_ref().is_none_or(|c| c.contacts != contacts) {
+            if let Some(old) = self.candidate.take() {
+                self.between.merge(&old.statistics);
+            }
+            let kind = contacts.iter().map(|c| c.kind).max().unwrap_or_default();
+            let statistics = Statistics::default();
+            self.candidate =
+                Some(Segment { index: self.next_index, begin: stamp, end: stamp, kind, contacts, statistics });
+        }
+        let candidate = self.candidate.as_mut()?;
+        candidate.statistics.add(tick);
+        candidate.end = stamp;
+        // A tick stands for its period; the tolerance keeps twenty ticks of 1 ms from being less than 20 ms.
+        if candidate.statistics.time < self.options.debounce * (1.0 - 1e-9) {
+            return None;
+        }
+        let began = self.candidate.take()?;
+        let ended = self.close();
+        self.next_index += 1;
+        self.current = Some(began.clone());
+        Some(Change { ended, began })
+    }
+
+    /// Ends the run: the last state, if one was confirmed.
+    pub fn finish(&mut self) -> Option<Segment> {
+        self.candidate = None;
+        self.held.clear();
+        self.close()
+    }
+
+    fn close(&mut self) -> Option<Segment> {
+        self.between = Statistics::default();
+        let left = self.left.take();
+        self.current.take().map(|c| Segment { end: left.unwrap_or(c.end), ..c })
+    }
+
+    /// The principal contacts of a tick, debounced in depth.
+    fn contacts(&mut self, tick: &TickRecord) -> Vec<PrincipalContact> {
+        let touches = principal_contacts(&tick.formation, tick.hip.rotation, self.book.as_ref());
+        let counts = |(c, depth): &(PrincipalContact, f64)| *depth >= self.options.min_depth || self.held.contains(c);
+        let contacts: Vec<PrincipalContact> = touches.into_iter().filter(counts).map(|(c, _)| c).collect();
+        self.held.clone_from(&contacts);
+        contacts
+    }
+}
+
+/// All segments of a run.
+pub fn segments<'t>(
+    ticks: impl IntoIterator<Item = &'t TickRecord>,
+    options: SegmentOptions,
+    book: Option<FeatureBook>,
+) -> Vec<Segment> {
+    let mut segmenter = Segmenter::new(options, book);
+    let mut found: Vec<Segment> =
+        ticks.into_iter().filter_map(|t| segmenter.push(t)).filter_map(|change| change.ended).collect();
+    found.extend(segmenter.finish());
+    found
+}
