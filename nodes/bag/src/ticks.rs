@@ -83,6 +83,38 @@ impl<'a> Ticks<'a> {
         })
     }
 
+    /// The first scene of the servo whose ticks these are, wherever it stands in the bag.
+    #[must_use]
+    pub fn find_scene(&self) -> Option<SceneDescription> {
+        self.find(SceneDescription::NAME)
+    }
+
+    /// The first configuration of the servo whose ticks these are, wherever it stands in the bag.
+    #[must_use]
+    pub fn find_configuration(&self) -> Option<ServoConfiguration> {
+        self.find(ServoConfiguration::NAME)
+    }
+
+    fn find<M: Message>(&self, type_name: &str) -> Option<M> {
+        let topics = self.reader.topics_of(type_name);
+        let wanted: Vec<usize> = topics.into_iter().filter(|&t| self.is_of_same_node(t)).collect();
+        if wanted.is_empty() {
+            return None;
+        }
+        self.reader.messages().filter(|m| wanted.contains(&m.topic)).find_map(|m| cdr::decode(&m.data).ok())
+    }
+
+    /// The stamped configurations of the servo whose ticks these are, in the order in which they came into force.
+    #[must_use]
+    pub fn find_configurations(&self) -> Vec<ServoConfiguration> {
+        let topics = self.reader.topics_of(ServoConfiguration::NAME);
+        let wanted: Vec<usize> = topics.into_iter().filter(|&t| self.is_of_same_node(t)).collect();
+        if wanted.is_empty() {
+            return Vec::new();
+        }
+        self.reader.messages().filter(|m| wanted.contains(&m.topic)).filter_map(|m| cdr::decode(&m.data).ok()).collect()
+    }
+
     /// Ticks missing between those that came so far.
     #[must_use]
     pub fn missing(&self) -> u64 {

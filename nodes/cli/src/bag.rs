@@ -1,3 +1,4 @@
+use crate::bag_segment::{self, Cut};
 use crate::failure::Failure;
 use crate::stdout::say;
 use bag::BagInfo;
@@ -29,6 +30,19 @@ enum Command {
         /// CSV to write.
         #[arg(long)]
         out: PathBuf,
+        #[command(flatten)]
+        cut: Cut,
+    },
+    /// The contact states of many runs, and the transitions between them.
+    Graph {
+        /// The bags' directories.
+        #[arg(required = true)]
+        dirs: Vec<PathBuf>,
+        /// Graph to write: .dot (Graphviz) or .json.
+        #[arg(long)]
+        out: PathBuf,
+        #[command(flatten)]
+        cut: Cut,
     },
 }
 
@@ -37,7 +51,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     match &args.command {
         Command::Info { dir } => info(dir),
         Command::Summary { dir } => crate::bag_summary::run(dir),
-        Command::Segment { out, .. } => Err(Failure::file(out, "not available yet")),
+        Command::Segment { dir, out, cut } => bag_segment::segment(dir, out, cut),
+        Command::Graph { dirs, out, cut } => bag_segment::graph(dirs, out, cut),
     }
 }
 

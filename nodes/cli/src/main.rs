@@ -2,6 +2,8 @@
 
 mod atomic_file;
 mod bag;
+mod bag_scene;
+mod bag_segment;
 mod bag_summary;
 mod csv_io;
 mod failure;
