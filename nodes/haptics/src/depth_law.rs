@@ -16,6 +16,9 @@ const TIED: f64 = 1e-6;
 /// Planes are one constraint when their normals differ by less than this (radians) and their offsets by this part of the part's size.
 const EQUAL: f64 = 4e-6;
 
+/// A pair is free of the SCP when its plane is violated by no more than this, metres.
+const FREED: f64 = 1e-9;
+
 /// A pair whose plane counts: the felt one, and its contacts in the scratch list.
 #[derive(Clone, Copy, Debug)]
 struct Touch {
@@ -89,23 +92,15 @@ impl DepthLaw {
     ) -> DepthResult {
         let placed = Placed::new(hip);
         let x0 = hip.translation;
-        let depth = self.gather(solids, pairs, hip, &placed);
+        let depth = self.project(solids, pairs, hip, &placed);
         let mut result =
             DepthResult { wrench: Wrench::ZERO, scp: x0, depth, formation: ContactFormation::FREE, dropped: 0 };
         if depth <= 0.0 {
             self.multiple = false;
             return result;
         }
-        // Corners by projection: SCP = argmin |p - x0|^2 with p on the free side of one plane per pair. One plane alone
-        // gives equation (1).
-        self.rows.clear();
-        for t in &self.touches {
-            let n = t.plane.normal_w.to_array();
-            self.rows.push(Row { normal: n, offset: -t.plane.distance, equality: false });
-        }
-        self.projection.solve(&self.rows);
         let shift = DVec3::from_array(self.projection.z);
-        result.scp = x0 + shift;
+        result.scp = x0 + shift; // one plane alone: (1)
         for (i, m) in self.projection.active() {
             self.touches[i].push = m;
         }
@@ -122,36 +117,64 @@ impl DepthLaw {
 
     /// The penetration of the hand's pose, metres, `>= 0`.
     pub fn depth(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose) -> f64 {
-        self.gather(solids, pairs, hip, &Placed::new(hip))
+        self.project(solids, pairs, hip, &Placed::new(hip))
     }
 
-    /// Lists the felt planes of all pairs in reach; returns the depth, metres.
-    fn gather(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
+    /// Corners by projection: SCP = argmin |p - x0|^2 with p on the free side of one felt plane per pair. Leaves planes
+    /// and multipliers in `touches` and `projection`; returns the depth, metres, the largest over the planes that count.
+    fn project(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
         self.touches.clear();
         self.points.clear();
+        self.rows.clear();
         let deepest = pairs.iter().map(|p| -p.near.distance).fold(0.0, f64::max);
         if deepest <= 0.0 {
             return 0.0;
         }
-        let mut depth = 0.0_f64;
+        let mut unfelt = 0;
         for s in pairs {
-            // A plane with f > 0 proves the pair apart, felt or not; but the SCP must not be pushed into it, so those
-            // within twice the depth stay as constraints.
-            let part = s.part as usize;
-            let piece = s.piece as usize;
-            let free = s.near.distance > 0.0;
+            // Free pairs stay as constraints as far as the SCP may be pushed into them.
             if s.near.distance > 2.0 * deepest {
                 continue;
             }
-            let Some(plane) = solids.felt_plane(part, piece, hip, placed, &s.near) else { continue };
-            if free && plane.contact != s.near.contact {
+            if solids.is_felt(s.part as usize, s.piece as usize, hip, placed, &s.near) {
+                self.touch(solids, s, s.near);
+            } else if s.near.distance < 0.0 {
+                unfelt += 1;
+            }
+        }
+        self.projection.solve(&self.rows);
+        if unfelt > 0 {
+            self.add_unfelt(solids, pairs, hip, placed);
+        }
+        self.touches.iter().map(|t| -t.plane.distance).fold(0.0, f64::max)
+    }
+
+    /// A pair whose nearest plane is a seam needs a felt plane of its own only where the others do not free it anyway: one
+    /// plane with `f >= 0` at the SCP, felt or not, proves freedom.
+    fn add_unfelt(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) {
+        for s in pairs.iter().filter(|s| s.near.distance < 0.0) {
+            let (part, piece) = (s.part as usize, s.piece as usize);
+            let shift = DVec3::from_array(self.projection.z);
+            let freed = |c: &CFace| c.distance + c.normal_w.dot(shift) >= -FREED;
+            if freed(&s.near) || solids.is_felt(part, piece, hip, placed, &s.near) {
                 continue;
             }
-            depth = depth.max(-plane.distance);
-            let tie = 2.0 * solids.part(part).size() * TIED;
-            self.touches.push(Touch { part: s.part, piece: s.piece, plane, first: 0, end: 0, tie, push: 0.0 });
+            if let Some(plane) = solids.felt_plane(part, piece, hip, placed, &s.near) {
+                // An equal plane adds nothing to the force, but its contacts belong to the region.
+                let again = !freed(&plane);
+                self.touch(solids, s, plane);
+                if again {
+                    self.projection.solve(&self.rows);
+                }
+            }
         }
-        depth
+    }
+
+    fn touch(&mut self, solids: &Solids, s: &Sensed, plane: CFace) {
+        let tie = 2.0 * solids.part(s.part as usize).size() * TIED;
+        self.touches.push(Touch { part: s.part, piece: s.piece, plane, first: 0, end: 0, tie, push: 0.0 });
+        let normal = plane.normal_w.to_array();
+        self.rows.push(Row { normal, offset: -plane.distance, equality: false });
     }
 
     /// Clips the contact regions of the penetrating pairs and states the formation.

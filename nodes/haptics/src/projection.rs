@@ -1,4 +1,5 @@
 //! The nearest point of a polyhedron to the origin: the quadratic program behind corners and proxy.
+#![expect(clippy::needless_range_loop, reason = "matrices and vectors walked by one index, as in the formulas")]
 
 /// One inequality `normal . z >= offset`.
 #[derive(Clone, Copy, Debug)]

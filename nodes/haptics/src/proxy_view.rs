@@ -4,9 +4,9 @@ use crate::formation::{ContactFormation, ContactPoint, FormationKind};
 use crate::paper_torque::convex_hull;
 use crate::proxy::Step;
 use crate::region::{Clipper, Placed, RegionPoint};
-use crate::sense::Sense;
+use crate::sense::{Sense, Sensed};
 use crate::solid::Solids;
-use cspace::BasicContact;
+use cspace::{BasicContact, CFace};
 use spatial::{DVec3, Pose};
 
 /// Penetration of the proxy that counts as none, metres.
@@ -14,6 +14,8 @@ pub(crate) const PENETRATION: f64 = 1e-8;
 /// A contact takes place from this gap on and ends at the larger one, metres: the formation does not chatter.
 const TOUCHING: f64 = 1e-7;
 const LEAVING: f64 = 5e-7;
+/// A felt plane of a piece whose nearest plane is a seam counts while it is violated by no more than this, metres.
+const BESIDE: f64 = 1e-6;
 /// Bounds of the reach, metres.
 const SHORTEST: f64 = 2e-4;
 const LONGEST: f64 = 3e-3;
@@ -91,17 +93,45 @@ impl View {
         self.pairs.clear();
         self.penetration = f64::NEG_INFINITY;
         for s in &self.sense.pairs {
+            // Inside a piece is penetration whether or not the plane is felt; f > 0 of any plane proves freedom.
+            self.penetration = self.penetration.max(-s.near.distance);
+        }
+        let mut felt_penetration = f64::NEG_INFINITY;
+        let mut unfelt = false;
+        for k in 0..self.sense.pairs.len() {
+            let s = self.sense.pairs[k];
             if s.near.distance > self.reach {
                 continue;
             }
-            let (part, piece) = (s.part as usize, s.piece as usize);
-            // f > 0 proves the pair apart whether or not the plane is felt; inside, only felt planes count.
-            let Some(plane) = solids.felt_plane(part, piece, pose, &placed, &s.near) else { continue };
-            self.penetration = self.penetration.max(-s.near.distance.max(plane.distance));
-            let first = self.points.len();
-            self.clipper.region(solids, part, piece, &placed, &plane, self.reach, &mut self.points);
-            self.pairs.push(InReach { part: s.part, piece: s.piece, first, end: self.points.len() });
+            if solids.is_felt(s.part as usize, s.piece as usize, pose, &placed, &s.near) {
+                felt_penetration = felt_penetration.max(-s.near.distance);
+                self.list(solids, &s, &s.near, &placed);
+            } else {
+                unfelt = true;
+            }
         }
+        if !unfelt {
+            return;
+        }
+        for k in 0..self.sense.pairs.len() {
+            let s = self.sense.pairs[k];
+            let (part, piece) = (s.part as usize, s.piece as usize);
+            if s.near.distance > self.reach || solids.is_felt(part, piece, pose, &placed, &s.near) {
+                continue;
+            }
+            let Some(plane) = solids.felt_plane(part, piece, pose, &placed, &s.near) else { continue };
+            // A plane far inside belongs to the other side of the solid: the pieces around push out first.
+            if plane.distance >= -BESIDE || felt_penetration <= PENETRATION && s.near.distance < -PENETRATION {
+                self.list(solids, &s, &plane, &placed);
+            }
+        }
+    }
+
+    fn list(&mut self, solids: &Solids, s: &Sensed, plane: &CFace, placed: &Placed) {
+        let first = self.points.len();
+        let (part, piece) = (s.part as usize, s.piece as usize);
+        self.clipper.region(solids, part, piece, placed, plane, self.reach, &mut self.points);
+        self.pairs.push(InReach { part: s.part, piece: s.piece, first, end: self.points.len() });
     }
 
     /// Moves the gaps along with a small step to `pose`.

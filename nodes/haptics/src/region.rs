@@ -139,11 +139,13 @@ impl Clipper {
             }
         }
         // Near's own contact, when its features face each other: under rounding the clipping may lose it.
-        if near.distance <= reach && !out[first..].iter().any(|p| p.contact == near.contact) {
-            if let Some(point_w) = facing_point(a, b, placed, near, 1e3 * same) {
-                let p = RegionPoint { contact: near.contact, point_w, normal_w: near.normal_w, gap: near.distance };
-                push(p, reach, same, first, out);
-            }
+        let listed = out[first..].iter().any(|p| p.contact == near.contact);
+        if near.distance <= reach
+            && !listed
+            && let Some(point_w) = facing_point(a, b, placed, near, 1e3 * same)
+        {
+            let p = RegionPoint { contact: near.contact, point_w, normal_w: near.normal_w, gap: near.distance };
+            push(p, reach, same, first, out);
         }
     }
 

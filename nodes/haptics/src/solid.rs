@@ -91,12 +91,14 @@ impl Solids {
         }
     }
 
-    /// The plane of the pair that counts: `near` itself where it is felt; else the felt C-face with the largest signed
-    /// distance among the face contacts and, around the best of them, the edge contacts. None if nothing is felt.
+    /// Whether the pair's nearest plane is one of the uncut solids.
+    pub fn is_felt(&self, part: usize, piece: usize, pose: &Pose, placed: &Placed, near: &CFace) -> bool {
+        self.is_seamless(part, piece) || self.is_felt_plane(part, piece, pose, placed, near)
+    }
+
+    /// Where `near` is not felt: the felt C-face with the largest signed distance among the face contacts and, around the
+    /// best of them and around `near`, the edge contacts. None if nothing is felt.
     pub fn felt_plane(&self, part: usize, piece: usize, pose: &Pose, placed: &Placed, near: &CFace) -> Option<CFace> {
-        if self.is_seamless(part, piece) || self.is_felt_plane(part, piece, pose, placed, near) {
-            return Some(*near);
-        }
         let (a, b) = (self.part(part), self.piece(piece));
         let mut best: Option<CFace> = None;
         let mut offer = |c: BasicContact| {

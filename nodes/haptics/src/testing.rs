@@ -1,8 +1,7 @@
 //! Bodies for the unit tests.
 
-use cspace::{FixedPart, Polyhedron, World};
+use cspace::Polyhedron;
 use spatial::DVec3;
-use std::sync::Arc;
 
 pub(crate) fn cuboid(low: DVec3, high: DVec3) -> Polyhedron {
     let v: Vec<DVec3> = (0..8)
@@ -17,11 +16,4 @@ pub(crate) fn cuboid(low: DVec3, high: DVec3) -> Polyhedron {
     let faces =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]].map(|f| f.to_vec());
     Polyhedron::from_faces(&v, &faces).expect("a box is a polyhedron")
-}
-
-/// A world of one moving body and the given pieces, each an obstacle of its own.
-pub(crate) fn world(moving: Polyhedron, fixed: Vec<Polyhedron>) -> Arc<World> {
-    let fixed =
-        fixed.into_iter().zip(0..).map(|(p, obstacle)| FixedPart { polyhedron: Arc::new(p), obstacle }).collect();
-    Arc::new(World { moving: vec![Arc::new(moving)], fixed })
 }
