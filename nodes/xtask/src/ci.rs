@@ -54,7 +54,6 @@ fn system_tests(variables: &Variables) -> Result<Command> {
         .env("CSPACE_HAPTICS_BIN", executables.folder()?)
         .env("CSPACE_HAPTICS_ROOT", workspace::root())
         .env("CSPACE_HAPTICS_TOOLS", tools)
-        .env("CSPACE_HAPTICS_XTASK", "/proc/self/exe")
         .env("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
         .env("ROS_LOCALHOST_ONLY", "1")
         .env_remove("ROS_STATIC_PEERS")

@@ -168,7 +168,7 @@ impl Processes<'_> {
 
     fn servo(&self) -> Result<Command> {
         let mut command = self.node("haptic_servo")?;
-        command.arg("--params-file").arg(crate::workspace::root().join("config/servo.param.yaml"));
+        command.arg("--params-file").arg(crate::workspace::root().join("config/haptic_servo.param.yaml"));
         set(&mut command, "scene", &self.scene.display());
         set(&mut command, "device.driver", &self.arguments.device);
         set(&mut command, "enabled", &true);

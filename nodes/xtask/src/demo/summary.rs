@@ -37,6 +37,9 @@ pub fn write(
     if report.interrupted {
         text.push_str(" (ended early)");
     }
+    if let Some(ticks) = ticks_run(&report.lines) {
+        text.push_str(&format!("\nticks run       {ticks}"));
+    }
     text.push_str(&format!("\nrecording       demo.rrd, {:.1} MB\n", size as f64 / 1e6));
     for line in &report.lines {
         text.push_str(line);
@@ -48,4 +51,27 @@ pub fn write(
     print!("{text}");
     println!("\nleft in {}", output.folder().display());
     Ok(ExitCode::SUCCESS)
+}
+
+/// The count in the line that the servo ends with.
+fn ticks_run(lines: &[String]) -> Option<u64> {
+    let words = lines.iter().filter(|line| line.starts_with("haptic_servo: ")).flat_map(|line| line.split_whitespace());
+    words.filter_map(|word| word.strip_prefix("ticks=")?.parse().ok()).next()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_servo_counts_not_the_recorder() {
+        let line = |text: &str| text.to_owned();
+        let lines = [
+            line("haptic_recorder: /r: recorded bag: ticks=7 lost=0"),
+            line("haptic_servo: /s: ticks=9 late=1"),
+            line("x"),
+        ];
+        assert_eq!(ticks_run(&lines), Some(9));
+        assert_eq!(ticks_run(&lines[..1]), None);
+    }
 }

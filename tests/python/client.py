@@ -1,0 +1,73 @@
+"""An independent ROS 2 client: rclpy, which knows nothing of this project but its messages."""
+
+import os
+import threading
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+from support import PATIENCE, wait_until
+
+
+def qos(reliable=False, latched=False, depth=1000):
+    """A subscriber's profile."""
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST,
+        depth=depth,
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+    )
+
+
+class Client:
+    """A node with a thread that spins it; a context."""
+
+    def __init__(self, name="observer", domain=None):
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context, domain_id=int(domain or os.environ["ROS_DOMAIN_ID"]))
+        self.node = rclpy.create_node(name, context=self.context)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self.stopping = threading.Event()
+        self.thread = threading.Thread(target=self._spin, daemon=True)
+        self.thread.start()
+
+    def _spin(self):
+        while not self.stopping.is_set():
+            self.executor.spin_once(timeout_sec=0.05)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.stopping.set()
+        self.thread.join(timeout=PATIENCE)
+        self.executor.shutdown()
+        self.node.destroy_node()
+        rclpy.shutdown(context=self.context)
+
+    def listen(self, kind, topic, profile):
+        """A list that grows with what comes on `topic`."""
+        heard = []
+        self.node.create_subscription(kind, topic, heard.append, profile)
+        return heard
+
+    def wait(self, heard, count=1, what="messages"):
+        wait_until(lambda: len(heard) >= count, f"{count} {what}, {len(heard)} came")
+        return heard
+
+    def call(self, kind, name, request):
+        client = self.node.create_client(kind, name)
+        wait_until(client.service_is_ready, f"service {name}")
+        future = client.call_async(request)
+        wait_until(future.done, f"answer of {name}")
+        return future.result()
+
+
+def seconds(stamp):
+    return stamp.sec + stamp.nanosec * 1e-9
+
+
+def norm(vector):
+    return (vector.x**2 + vector.y**2 + vector.z**2) ** 0.5

@@ -1,0 +1,87 @@
+"""haptic_recorder and haptic_inspect beside a servo: independent readers open what they wrote, even after a kill."""
+
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from support import BIN, ROOT, TOOLS, enter, node, wait_until
+
+SCENE = ROOT / "config/scenes/peg_in_hole/scene.yaml"
+TOPICS = ",".join(f"/haptic_servo/{name}" for name in ("ticks", "pose", "proxy_pose", "wrench", "scene", "configuration"))
+
+
+def check_bag(bag, *options):
+    """The independent readers' verdict."""
+    command = [TOOLS / "bin/python", ROOT / "tests/python/check_bag.py", *options, bag]
+    return subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=120, env={"PATH": "/usr/bin:/bin"})
+
+
+def rerun(*arguments):
+    """The viewer's own command line."""
+    program = next(TOOLS.glob("lib/python3*/site-packages/rerun_sdk/rerun_cli/rerun"))
+    return subprocess.run([str(program), *map(str, arguments)], capture_output=True, text=True, timeout=300)
+
+
+class Recording(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(enter(self, tempfile.TemporaryDirectory()))
+        self.bag = self.folder / "bag"
+
+    def start(self, name, **parameters):
+        return enter(self, node(name, cwd=self.folder, **parameters)).wait_ready()
+
+    def start_servo(self):
+        return self.start("haptic_servo", scene=SCENE, enabled=True, device__operator__speed=2.0)
+
+    def test_independent_readers_read_the_bag(self):
+        recorder = self.start("haptic_recorder", output=self.bag)
+        servo = self.start_servo()
+        recorder.wait_for_line("/haptic_servo/ticks")
+        wait_until(lambda: sum(f.stat().st_size for f in self.bag.glob("*.mcap")) > 400_000, "400 kB in the bag")
+        self.assertEqual(servo.end(), 0, servo.text)
+        self.assertEqual(recorder.end(), 0, recorder.text)
+        self.assertIn("lost=0", recorder.wait_for_line("ticks="))
+        verdict = check_bag(self.bag, "--topics", TOPICS, "--ticks-at-least", "500")
+        self.assertEqual(verdict.returncode, 0, verdict.stdout + verdict.stderr)
+
+    def test_killed_at_any_moment_the_bag_lacks_at_most_a_second(self):
+        servo = self.start_servo()
+        for moment in (0.15, 0.7, 1.6, 2.9):
+            bag = self.folder / f"bag-{moment}"
+            recorder = self.start("haptic_recorder", output=bag)
+            recorder.wait_for_line("/haptic_servo/ticks")
+            begun = time.time()
+            time.sleep(moment)  # the moment is the test's input, not a wait for something
+            recorder.end(signal.SIGKILL)
+            killed = time.time()
+            summary = subprocess.run([BIN / "cspace-haptics", "bag", "summary", bag], capture_output=True, text=True, timeout=60)
+            if killed - begun < 1.0 and summary.returncode == 1:
+                continue  # all of it may be within the last second
+            self.assertEqual(summary.returncode, 0, summary.stderr)
+            verdict = check_bag(bag)
+            self.assertEqual(verdict.returncode, 0, verdict.stdout + verdict.stderr)
+            recorded = next(float(l.split()[2]) for l in summary.stdout.splitlines() if l.startswith("time recorded"))
+            self.assertGreater(recorded, killed - begun - 1.0, summary.stdout)
+            self.assertIn("ticks lost      0", summary.stdout)
+        self.assertEqual(servo.end(), 0, servo.text)
+
+    def test_the_recording_for_rerun_is_whole(self):
+        file = self.folder / "demo.rrd"
+        inspect = self.start("haptic_inspect", output=file, scene=SCENE)
+        servo = self.start_servo()
+        wait_until(lambda: file.stat().st_size > 500_000, "500 kB in the recording")
+        self.assertEqual(servo.end(), 0, servo.text)
+        self.assertEqual(inspect.end(), 0, inspect.text)
+        verdict = rerun("rrd", "verify", file)
+        self.assertEqual(verdict.returncode, 0, verdict.stdout + verdict.stderr)
+        printed = rerun("rrd", "print", file)
+        self.assertEqual(printed.returncode, 0, printed.stderr)
+        for part in ("blueprint", "/physical", "/cspace"):
+            self.assertIn(part, printed.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,193 @@
+"""haptic_servo as an rclpy program sees it: discovery, topics, services, parameters."""
+
+import math
+import unittest
+
+from client import Client, norm, qos, seconds
+from cspace_haptics_msgs.msg import ContactState, SceneDescription, ServoConfiguration, TickBatch
+from geometry_msgs.msg import PoseStamped, WrenchStamped
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
+from rclpy.qos import ReliabilityPolicy
+from std_srvs.srv import SetBool, Trigger
+from support import enter, node, wait_until
+
+NAME = "/haptic_servo"
+
+
+def parameter(name, value):
+    kinds = {float: ("double_value", ParameterType.PARAMETER_DOUBLE), str: ("string_value", ParameterType.PARAMETER_STRING)}
+    field, kind = kinds[type(value)]
+    return Parameter(name=name, value=ParameterValue(type=kind, **{field: value}))
+
+
+def ticks(batches):
+    return [tick for batch in list(batches) for tick in batch.ticks]
+
+
+class ServoNode(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.client = enter(cls, Client())
+        # Subscribed before the servo starts, so that nothing of its beginning is missed but by discovery.
+        cls.batches = cls.client.listen(TickBatch, f"{NAME}/ticks", qos(reliable=True))
+        cls.poses = cls.client.listen(PoseStamped, f"{NAME}/pose", qos())
+        cls.proxies = cls.client.listen(PoseStamped, f"{NAME}/proxy_pose", qos())
+        cls.wrenches = cls.client.listen(WrenchStamped, f"{NAME}/wrench", qos())
+        cls.states = cls.client.listen(ContactState, f"{NAME}/contacts", qos(reliable=True))
+        cls.servo = enter(cls, node("haptic_servo", scene="peg_in_hole", device__operator__speed=2.0))
+        cls.servo.wait_ready()
+
+    def test_1_is_discovered_with_its_topics_and_services(self):
+        graph = self.client.node
+        wait_until(lambda: ("haptic_servo", "/") in graph.get_node_names_and_namespaces(), "the node in the graph")
+        expected = {
+            "pose": "geometry_msgs/msg/PoseStamped",
+            "proxy_pose": "geometry_msgs/msg/PoseStamped",
+            "wrench": "geometry_msgs/msg/WrenchStamped",
+            "contacts": "cspace_haptics_msgs/msg/ContactState",
+            "ticks": "cspace_haptics_msgs/msg/TickBatch",
+            "markers": "visualization_msgs/msg/MarkerArray",
+        }
+
+        def topics():
+            return dict(graph.get_publisher_names_and_types_by_node("haptic_servo", "/"))
+
+        wait_until(lambda: all(f"{NAME}/{topic}" in topics() for topic in expected), f"topics, there are {topics()}")
+        for topic, kind in expected.items():
+            self.assertEqual(topics()[f"{NAME}/{topic}"], [kind])
+        self.assertIn("/diagnostics", topics())
+        services = dict(graph.get_service_names_and_types_by_node("haptic_servo", "/"))
+        self.assertEqual(services[f"{NAME}/enable"], ["std_srvs/srv/SetBool"])
+        self.assertEqual(services[f"{NAME}/reset"], ["std_srvs/srv/Trigger"])
+
+    def test_2_quality_of_service_fits_the_purpose(self):
+        def reliability(topic):
+            offers = self.client.node.get_publishers_info_by_topic(f"{NAME}/{topic}")
+            return offers[0].qos_profile.reliability if offers else None
+
+        for topic in ("pose", "proxy_pose", "wrench"):
+            self.assertEqual(reliability(topic), ReliabilityPolicy.BEST_EFFORT, topic)
+        for topic in ("ticks", "contacts"):
+            self.assertEqual(reliability(topic), ReliabilityPolicy.RELIABLE, topic)
+
+    def test_3_force_is_zero_before_enable(self):
+        # A whole motion of the operator at twice the speed: contact is certain, force is not shown.
+        wait_until(lambda: any(t.contacts for t in ticks(self.batches)), "a contact")
+        self.client.wait(self.wrenches, 20, "wrenches")
+        for message in list(self.wrenches):
+            self.assertEqual((norm(message.wrench.force), norm(message.wrench.torque)), (0.0, 0.0))
+        for tick in ticks(self.batches):
+            self.assertFalse(tick.enabled)
+            self.assertEqual(norm(tick.out_wrench.force), 0.0)
+
+    def test_4_enable_brings_force_and_takes_it_away(self):
+        answer = self.client.call(SetBool, f"{NAME}/enable", SetBool.Request(data=True))
+        self.assertTrue(answer.success, answer.message)
+        wait_until(lambda: any(norm(m.wrench.force) > 0.2 for m in list(self.wrenches)), "a force on the wrench topic")
+        answer = self.client.call(SetBool, f"{NAME}/enable", SetBool.Request(data=False))
+        self.assertTrue(answer.success, answer.message)
+        # From the first tick that saw the command on, nothing but zero.
+        wait_until(lambda: not ticks(self.batches)[-1].enabled, "a tick without force wanted")
+        newest = ticks(self.batches)[-1].sequence
+        wait_until(lambda: ticks(self.batches)[-1].sequence > newest + 200, "200 more ticks")
+        off = [t for t in ticks(self.batches) if t.sequence > newest + 10]
+        self.assertTrue(all(norm(t.out_wrench.force) == 0.0 for t in off))
+
+    def test_5_every_tick_arrives_in_order_with_its_time(self):
+        wait_until(lambda: len(ticks(self.batches)) > 3000, "3,000 ticks")
+        all_ticks = ticks(self.batches)
+        numbers = [t.sequence for t in all_ticks]
+        self.assertEqual(numbers, list(range(numbers[0], numbers[0] + len(numbers))), "a gap in the sequence numbers")
+        self.assertEqual({b.lost for b in list(self.batches)}, {0})
+        stamps = [seconds(t.stamp) for t in all_ticks]
+        self.assertTrue(all(b > a for a, b in zip(stamps, stamps[1:])), "stamps go back")
+        self.assertAlmostEqual((stamps[-1] - stamps[0]) / (len(stamps) - 1), 1e-3, delta=1e-4)
+        self.assertTrue(all(t.dt > 0 and t.depth >= 0 for t in all_ticks))
+
+    def test_6_stamps_and_frames(self):
+        self.client.wait(self.poses, 5, "poses")
+        self.client.wait(self.proxies, 5, "proxy poses")
+        now = self.client.node.get_clock().now().nanoseconds * 1e-9
+        for heard in (self.poses, self.proxies, self.wrenches, self.states):
+            for message in list(heard):
+                self.assertEqual(message.header.frame_id, "world")
+                self.assertLess(abs(now - seconds(message.header.stamp)), 600.0)
+            stamps = [seconds(m.header.stamp) for m in list(heard)]
+            self.assertEqual(stamps, sorted(stamps))
+        for message in list(self.poses) + list(self.proxies):
+            q = message.pose.orientation
+            self.assertAlmostEqual(math.sqrt(q.x**2 + q.y**2 + q.z**2 + q.w**2), 1.0, places=9)
+        self.assertEqual({b.child_frame_id for b in list(self.batches)}, {"hand"})
+        self.assertEqual({b.version for b in list(self.batches)}, {1})
+
+    def test_7_contact_states_begin_and_end(self):
+        wait_until(lambda: any(s.event == ContactState.EVENT_END for s in list(self.states)), "the end of a contact state")
+        states = list(self.states)
+        indices = [s.index for s in states]
+        self.assertEqual(indices, sorted(indices))
+        for state in states:
+            self.assertLessEqual(seconds(state.begin), seconds(state.header.stamp))
+            self.assertGreaterEqual(state.max_force, state.mean_force * (1 - 1e-9))
+            self.assertGreaterEqual(state.max_depth, 0.0)
+
+    def test_8_a_late_joiner_gets_scene_configuration_and_contact_state_at_once(self):
+        with Client("late_joiner") as late:
+            latched = qos(reliable=True, latched=True, depth=1)
+            scenes = late.listen(SceneDescription, f"{NAME}/scene", latched)
+            configurations = late.listen(ServoConfiguration, f"{NAME}/configuration", latched)
+            states = late.listen(ContactState, f"{NAME}/contacts", latched)
+            late.wait(scenes, what="scenes")
+            late.wait(configurations, what="configurations")
+            late.wait(states, what="contact states")
+            self.assertEqual(scenes[0].name, "peg_in_hole")
+            self.assertIn("law", configurations[0].yaml)
+
+    def test_9_parameters_are_described_set_and_refused_with_the_reason(self):
+        call = self.client.call
+        listed = call(ListParameters, f"{NAME}/list_parameters", ListParameters.Request()).result.names
+        self.assertIn("gains.stiffness", listed)
+        described = call(DescribeParameters, f"{NAME}/describe_parameters", DescribeParameters.Request(names=["gains.stiffness"]))
+        self.assertEqual(described.descriptors[0].type, ParameterType.PARAMETER_DOUBLE)
+        span = described.descriptors[0].floating_point_range[0]
+        self.assertLess(span.from_value, span.to_value)
+        self.assertTrue(described.descriptors[0].description)
+
+        def set_one(name, value):
+            return call(SetParameters, f"{NAME}/set_parameters", SetParameters.Request(parameters=[parameter(name, value)])).results[0]
+
+        def get_one(name):
+            return call(GetParameters, f"{NAME}/get_parameters", GetParameters.Request(names=[name])).values[0]
+
+        self.assertTrue(set_one("gains.stiffness", 800.0).successful)
+        self.assertEqual(get_one("gains.stiffness").double_value, 800.0)
+        wait_until(lambda: ticks(self.batches)[-1].gains.stiffness == 800.0, "the gain in a tick")
+        for name, value, reason in (
+            ("gains.stiffness", -1.0, "range"),
+            ("gains.stiffness", 1e9, "range"),
+            ("gains.stiffness", float("nan"), "not a number"),
+            ("gains.stiffness", "stiff", "double"),
+            ("law", "papers", "paper"),
+            ("no.such", 1.0, "no parameter"),
+            ("frame_id", "elsewhere", "restart"),
+        ):
+            result = set_one(name, value)
+            self.assertFalse(result.successful, f"{name} = {value} was taken")
+            self.assertIn(reason, result.reason)
+        self.assertEqual(get_one("gains.stiffness").double_value, 800.0, "a refused value changes nothing")
+
+    def test_a_reset_is_answered_and_reaches_a_tick(self):
+        before = ticks(self.batches)[-1].reset_count
+        self.assertTrue(self.client.call(Trigger, f"{NAME}/reset", Trigger.Request()).success)
+        wait_until(lambda: ticks(self.batches)[-1].reset_count == before + 1, "the reset in a tick")
+
+    def test_b_ends_cleanly_with_force_off(self):
+        self.client.call(SetBool, f"{NAME}/enable", SetBool.Request(data=True))
+        wait_until(lambda: norm(self.wrenches[-1].wrench.force) > 0.2, "force")
+        self.assertEqual(self.servo.end(), 0, self.servo.text)
+        self.servo.wait_for_line("ticks=")
+        wait_until(lambda: norm(self.wrenches[-1].wrench.force) == 0.0, "the last wrench to be zero")
+
+
+if __name__ == "__main__":
+    unittest.main()
