@@ -1,0 +1,282 @@
+use super::contact_events::ContactEvents;
+use super::drivers;
+use super::setup::{apply, declared, scene_file};
+use super::{Due, Frames, ServoTopics, TopicLink};
+use crate::convert::{ServoReport, scene_description, sha256};
+use crate::parameters::ParameterServer;
+use crate::{Failure, Host, Inbox, Listener, Outcome, Talker, qos};
+use bag::msg::{ContactState, Header, SceneDescription, ServoConfiguration, ServoHealth, WrenchStamped};
+use device::HapticDevice;
+use r2r::diagnostic_msgs::msg::DiagnosticArray;
+use r2r::std_srvs::srv::{SetBool, Trigger};
+use r2r::{Publisher, QosProfile, ServiceRequest};
+use realtime::{Grant, ThreadSetup};
+use scene::Scene;
+use servo::config::Config;
+use servo::{AlignedDevice, Commands, Health, LoopConfig, Servo, Tick, TickRecord};
+use spatial::{Stamp, Wrench};
+use std::time::Duration;
+
+/// A wrench from the robot older than this is let go, s.
+const REMOTE_TIMEOUT: f64 = 0.1;
+/// A contact state shorter than this is not told, s.
+const DEBOUNCE: f64 = 0.005;
+/// How long a turn waits for requests: well below a batch of ticks.
+const TURN: Duration = Duration::from_millis(2);
+
+/// The servo as a node.
+pub struct ServoNode {
+    host: Host,
+    parameters: ParameterServer,
+    config: Config,
+    commands: Commands,
+    servo: Servo,
+    link: Option<TopicLink>,
+    topics: ServoTopics,
+    events: ContactEvents,
+    contacts: Talker<ContactState>,
+    configuration: Talker<ServoConfiguration>,
+    scene_name: String,
+    /// Kept: a late joiner is given its message by the middleware as long as the publisher lives.
+    _scene: Talker<SceneDescription>,
+    health: Talker<ServoHealth>,
+    diagnostics: Publisher<DiagnosticArray>,
+    enable: Inbox<ServiceRequest<SetBool::Service>>,
+    reset: Inbox<ServiceRequest<Trigger::Service>>,
+    remote: Listener<WrenchStamped>,
+    remote_since: Option<Stamp>,
+    last: TickRecord,
+    since: Health,
+    report_due: Due,
+    ongoing_due: Due,
+}
+
+impl ServoNode {
+    /// Reads the parameters, builds the scene, opens the device and starts the loop.
+    ///
+    /// # Errors
+    /// Whatever cannot be had: a parameter, the scene, the device, a thread.
+    pub fn start(mut host: Host) -> Outcome<Self> {
+        let mut parameters = ParameterServer::new(&mut host.node, declared())?;
+        let mut config = Config::default();
+        apply(&mut config, parameters.values()).map_err(Failure::new)?;
+        let file = scene_file(&config.scene)?;
+        let scene = Scene::load(&file).map_err(|e| Failure::new(e.to_string()))?;
+        let frames = Frames { world: config.frame_id.clone(), part: config.child_frame_id.clone() };
+        let node = &mut host.node;
+        let topics = ServoTopics::new(node, frames, &scene.world, config.publish_rate, config.realtime.rate)?;
+        let contacts = Talker::new(node, "~/contacts", qos::latched(1))?;
+        let scene_talker = Talker::new(node, "~/scene", qos::latched(1))?;
+        let configuration = Talker::new(node, "~/configuration", qos::latched(1))?;
+        let health = Talker::new(node, "~/health", QosProfile::default())?;
+        let diagnostics = node.create_publisher("/diagnostics", QosProfile::default())?;
+        let enable = Inbox::new(node.create_service::<SetBool::Service>("~/enable", QosProfile::services_default())?);
+        let reset = Inbox::new(node.create_service::<Trigger::Service>("~/reset", QosProfile::services_default())?);
+        let remote = Listener::new(node, "~/remote_wrench", qos::sensor())?;
+        let trust_stamps = parameters.switch("device.trust_stamps");
+        let (device, link) = drivers::open(node, &config, &scene, trust_stamps)?;
+        let commands = Commands { enabled: parameters.switch("enabled"), gains: config.gains, ..Commands::default() };
+        let servo = spawn_loop(device, &scene, &config, commands)?;
+        scene_talker.say(&scene_description(&scene, host.now(), &config.frame_id))?;
+        parameters.serve(host.now(), &mut |_| Ok(()))?;
+        let node = Self {
+            events: ContactEvents::new(&config.frame_id, DEBOUNCE),
+            report_due: Due::every(1.0),
+            ongoing_due: Due::every(0.5),
+            last: TickRecord::default(),
+            since: Health::GOOD,
+            remote_since: None,
+            scene_name: scene.name.clone(),
+            _scene: scene_talker,
+            host,
+            parameters,
+            config,
+            commands,
+            servo,
+            link,
+            topics,
+            contacts,
+            configuration,
+            health,
+            diagnostics,
+            enable,
+            reset,
+            remote,
+        };
+        node.say_configuration()?;
+        Ok(node)
+    }
+
+    /// Runs until a signal, then lets the force go, joins the loop and sends what is left.
+    ///
+    /// # Errors
+    /// The loop ended by itself, or the middleware failed; the force is gone in any case.
+    pub fn run(mut self) -> Outcome<()> {
+        let grants = self.servo.handle.grants().to_string();
+        if !self.servo.handle.grants().all_granted() {
+            self.host.warn(&format!("real time: {grants}"));
+        }
+        self.host.say_ready();
+        let outcome = self.turns(&grants);
+        self.servo.handle.stop();
+        let ended = self.finish();
+        outcome.and(ended)
+    }
+
+    fn turns(&mut self, grants: &str) -> Outcome<()> {
+        while !self.host.stopped() {
+            if !self.servo.handle.is_running() {
+                return Ok(()); // `finish` joins the thread and says why it ended.
+            }
+            self.host.spin_once(TURN);
+            let now = self.host.now();
+            self.serve(now)?;
+            if let Some(link) = &mut self.link {
+                link.turn(now)?;
+            }
+            self.publish_ticks()?;
+            if self.report_due.at(now) {
+                self.report(now, grants)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Answers requests and hands the newest commands to the loop.
+    fn serve(&mut self, now: Stamp) -> Outcome<()> {
+        let before = self.commands;
+        while let Some(request) = self.enable.take() {
+            self.commands.enabled = request.message.data;
+            let message = if request.message.data { "force ramps up" } else { "force is off" };
+            // Told after it is so: the cell is read by the next tick.
+            self.servo.commands.write(self.commands);
+            request.respond(SetBool::Response { success: true, message: message.into() })?;
+        }
+        while let Some(request) = self.reset.take() {
+            self.commands.reset_count = self.commands.reset_count.wrapping_add(1);
+            self.servo.commands.write(self.commands);
+            request.respond(Trigger::Response { success: true, message: "contact is sought anew".into() })?;
+        }
+        let mut wanted = self.config.clone();
+        self.parameters.serve(now, &mut |new| apply(&mut wanted, new))?;
+        if wanted != self.config {
+            self.config = wanted;
+            self.commands.gains = self.config.gains;
+            self.say_configuration()?;
+        }
+        self.hear_robot(now);
+        if self.commands != before {
+            self.servo.commands.write(self.commands);
+        }
+        Ok(())
+    }
+
+    /// The wrench measured at a robot that follows; silence is no force.
+    fn hear_robot(&mut self, now: Stamp) {
+        if let Some(message) = self.remote.take_newest() {
+            let wrench: Wrench = message.wrench.into();
+            if wrench.is_finite() {
+                self.commands.remote = wrench;
+                self.remote_since = Some(now);
+            }
+        }
+        if self.remote_since.is_some_and(|t| (now.0 - t.0) as f64 * 1e-9 > REMOTE_TIMEOUT) {
+            self.commands.remote = Wrench::ZERO;
+            self.remote_since = None;
+        }
+    }
+
+    fn publish_ticks(&mut self) -> Outcome<()> {
+        while let Some(tick) = self.servo.records.pop() {
+            self.topics.tick(&tick, self.servo.records.dropped())?;
+            for event in self.events.add(&tick) {
+                self.contacts.say(&event)?;
+            }
+            if self.ongoing_due.at(tick.input.stamp)
+                && let Some(state) = self.events.ongoing(&tick)
+            {
+                self.contacts.say(&state)?;
+            }
+            self.since.set(tick.health);
+            self.last = tick;
+        }
+        // Nobody draws in this process: the pictures' ring must not look full.
+        while self.servo.pictures.pop().is_some() {}
+        Ok(())
+    }
+
+    fn report(&mut self, now: Stamp, grants: &str) -> Outcome<()> {
+        let report = ServoReport {
+            status: self.servo.status.read(),
+            last: &self.last,
+            since: self.since,
+            grants,
+            realtime: matches!(self.servo.handle.grants().scheduling, Grant::Granted),
+            period: self.config.realtime.period(),
+            law: &self.parameters.text("law"),
+        };
+        self.health.say(&report.health_message(now, &self.config.frame_id))?;
+        let hardware = self.parameters.text("device.driver");
+        self.diagnostics.publish(&report.diagnostics(now, self.host.name(), &hardware))?;
+        self.since = Health::GOOD;
+        Ok(())
+    }
+
+    fn say_configuration(&self) -> Outcome<()> {
+        let yaml = self.config.to_yaml();
+        self.configuration.say(&ServoConfiguration {
+            header: Header { stamp: self.host.now().into(), frame_id: self.config.frame_id.clone() },
+            scene: self.scene_name.clone(),
+            sha256: sha256(&yaml),
+            yaml,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            record_version: TickRecord::VERSION,
+        })
+    }
+
+    /// After the loop was told to stop: its last ticks, the last word on the wrench, and what it all came to.
+    fn finish(mut self) -> Outcome<()> {
+        let link = self.link.take();
+        let Servo { handle, mut records, .. } = self.servo;
+        let joined = handle.join();
+        while let Some(tick) = records.pop() {
+            self.topics.tick(&tick, records.dropped())?;
+        }
+        self.topics.flush()?;
+        let now = self.host.now();
+        self.topics.say_no_force(now)?;
+        if let Some(mut link) = link {
+            link.turn(now)?;
+        }
+        // What was just sent is on its way when the publishers go: give it the time to arrive.
+        for _ in 0..10 {
+            self.host.spin_once(Duration::from_millis(20));
+        }
+        let status = joined.map_err(|e| Failure::new(e.to_string()))?;
+        self.host.say(&format!(
+            "ticks={} late={} lost={} wakeup: {}",
+            status.ticks,
+            status.late_ticks,
+            status.records_dropped,
+            status.wakeup.summary()
+        ));
+        self.host.say(&format!("tick: {}", status.compute.summary()));
+        Ok(())
+    }
+}
+
+/// Starts the loop on its thread.
+fn spawn_loop(device: Box<dyn HapticDevice>, scene: &Scene, config: &Config, commands: Commands) -> Outcome<Servo> {
+    let mut tick = Tick::new(scene, config);
+    let device = Box::new(AlignedDevice::new(device, &config.mapping));
+    let loop_config = LoopConfig {
+        rate_hz: config.realtime.rate,
+        thread: ThreadSetup {
+            priority: u8::try_from(config.realtime.priority).unwrap_or(0),
+            cpu: i32::try_from(config.realtime.cpu).unwrap_or(-1),
+            lock_memory: config.realtime.lock_memory,
+        },
+        ..LoopConfig::default()
+    };
+    servo::spawn(device, move |input| tick.step(input), commands, &loop_config).map_err(|e| Failure::new(e.to_string()))
+}
