@@ -10,6 +10,9 @@ mod failure;
 #[cfg(feature = "inspect")]
 mod inspect;
 mod replay;
+mod replay_motion;
+#[cfg(feature = "inspect")]
+mod rrd;
 mod scene;
 mod stdout;
 mod step_time;

@@ -1,29 +1,45 @@
+use crate::atomic_file::AtomicFile;
+use crate::csv_io::read_text;
 use crate::failure::Failure;
-use std::path::PathBuf;
+use crate::replay_motion::Motion;
+use crate::stdout::say;
+use crate::step_time::StepTime;
+use bag::msg::{SceneDescription, ServoConfiguration};
+use haptics::LawKind;
+use scene::Scene;
+use servo::{Config, Tick, TickRecord};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 /// `replay`: render a motion in a scene.
+///
+/// Poses are the hand's poses of A in W: no clutch, no scaling. The output has one row a pose; see the README for its columns.
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("motion").required(true).args(["poses", "bag"])))]
 pub struct Args {
-    /// The scene file.
+    /// The scene file; a bag of ticks brings its own.
     #[arg(long, required_unless_present = "bag")]
     pub scene: Option<PathBuf>,
     /// Poses of A in W, the hand's: CSV `t,x,y,z,qx,qy,qz,qw`.
     #[arg(long)]
     pub poses: Option<PathBuf>,
-    /// A bag with ticks or poses.
+    /// A bag with ticks, which are rendered again bit for bit, or with poses.
     #[arg(long)]
     pub bag: Option<PathBuf>,
     /// CSV to write.
     #[arg(long)]
     pub out: PathBuf,
-    /// The force law: paper, pstar, blended or proxy.
+    /// The force law; otherwise that of the parameters or of the bag.
+    #[arg(long, value_enum)]
+    pub law: Option<Law>,
+    /// Parameter file (as the servo node takes it); otherwise the defaults or those of the bag.
     #[arg(long)]
-    pub law: Option<String>,
-    /// Also write the ticks as a bag.
+    pub params: Option<PathBuf>,
+    /// Also write the ticks as a bag, into this new folder.
     #[arg(long)]
     pub bag_out: Option<PathBuf>,
     /// Also write a rerun recording.
+    #[cfg(feature = "inspect")]
     #[arg(long)]
     pub rrd: Option<PathBuf>,
     /// Also print the time of a step.
@@ -31,7 +47,144 @@ pub struct Args {
     pub time: bool,
 }
 
+/// `--law`.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum Law {
+    /// The paper's equations (1) to (6) as written.
+    Paper,
+    /// Torque about the nearest point of the contact region.
+    Pstar,
+    /// Depth-weighted contact region.
+    Blended,
+    /// Six-dimensional proxy.
+    Proxy,
+}
+
+impl Law {
+    const fn kind(self) -> LawKind {
+        match self {
+            Self::Paper => LawKind::Paper,
+            Self::Pstar => LawKind::Pstar,
+            Self::Blended => LawKind::Blended,
+            Self::Proxy => LawKind::Proxy,
+        }
+    }
+}
+
+const HEADER: &str = "t,depth,formation,contacts,scp_x,scp_y,scp_z,fx,fy,fz,tx,ty,tz,\
+    out_fx,out_fy,out_fz,out_tx,out_ty,out_tz,health\n";
+
 /// Runs `replay`.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Err(Failure::file(&args.out, "not available yet"))
+    let mut config = match &args.params {
+        Some(path) => parse_config(&read_text(path)?, path)?,
+        None => Config::default(),
+    };
+    if let Some(law) = args.law {
+        config.gains.law = law.kind();
+    }
+    let mut motion = match (&args.poses, &args.bag) {
+        (Some(csv), _) => Motion::from_csv(csv, &config)?,
+        (None, Some(dir)) => Motion::from_bag(dir, &config)?,
+        // The argument group asks for one of them.
+        (None, None) => return Err(Failure::plain("neither --poses nor --bag")),
+    };
+    if let (Some(c), None, Some(dir)) = (&motion.configuration, &args.params, &args.bag) {
+        config = parse_config(&c.yaml, dir)?;
+    }
+    if let Some(law) = args.law {
+        config.gains.law = law.kind();
+        motion.inputs.iter_mut().for_each(|i| i.gains.law = law.kind());
+    }
+    let scene = load_scene(args, &motion)?;
+    let records = render(args, &scene, &config, &motion)?;
+    compare(&motion.recorded, &records)?;
+    if args.time {
+        let time = StepTime::measure_from(|| Tick::new(&scene, &config), &motion.inputs, Tick::step);
+        say(&time.to_string())?;
+    }
+    Ok(())
+}
+
+fn parse_config(yaml: &str, file: &Path) -> Result<Config, Failure> {
+    Config::from_yaml(yaml).map_err(|e| Failure::file(file, e))
+}
+
+fn load_scene(args: &Args, motion: &Motion) -> Result<Scene, Failure> {
+    if let Some(path) = &args.scene {
+        return Scene::load(path).map_err(Failure::plain);
+    }
+    let dir = args.bag.as_deref().unwrap_or(Path::new(""));
+    motion.own_scene(dir)?.ok_or_else(|| Failure::file(dir, "the bag holds no scene: name one with --scene"))
+}
+
+/// Renders all ticks and writes what was asked for; the CSV appears last, when all the rest went well.
+fn render(args: &Args, scene: &Scene, config: &Config, motion: &Motion) -> Result<Vec<TickRecord>, Failure> {
+    let mut out = AtomicFile::create(&args.out)?;
+    out.write(HEADER)?;
+    let mut tick = Tick::new(scene, config);
+    let mut row = String::with_capacity(512);
+    let mut records = Vec::with_capacity(motion.inputs.len());
+    for (input, t) in motion.inputs.iter().zip(&motion.times) {
+        let record = tick.step(input);
+        row.clear();
+        format_row(&mut row, *t, &record);
+        out.write(&row)?;
+        records.push(record);
+    }
+    if let Some(dir) = &args.bag_out {
+        write_bag(dir, scene, config, &records)?;
+    }
+    #[cfg(feature = "inspect")]
+    if let Some(rrd) = &args.rrd {
+        crate::rrd::record(rrd, scene, &records)?;
+    }
+    out.finish()?;
+    Ok(records)
+}
+
+fn write_bag(dir: &Path, scene: &Scene, config: &Config, records: &[TickRecord]) -> Result<(), Failure> {
+    let files = scene.bundle.files.iter().map(|(path, data)| (path.clone(), data.clone()));
+    let description = SceneDescription::new(&scene.name, &config.frame_id, &scene.bundle.yaml, files);
+    let configuration = ServoConfiguration::new(&scene.name, &config.frame_id, &config.to_yaml());
+    bag::write_ticks(dir, &description, &configuration, records).map_err(Failure::plain)
+}
+
+fn format_row(row: &mut String, t: f64, record: &TickRecord) {
+    let (p, law, out) = (record.proxy.translation, &record.law_wrench, &record.out_wrench);
+    // `{:?}` of an f64 is the shortest text that reads back to the same number. Writing to a String cannot fail.
+    let contacts = record.formation.points().len();
+    let _ = write!(row, "{t:?},{:?},{},{contacts}", record.depth, record.formation.kind.name());
+    for v in [p, law.force, law.torque, out.force, out.torque] {
+        let _ = write!(row, ",{:?},{:?},{:?}", v.x, v.y, v.z);
+    }
+    let _ = writeln!(row, ",{}", record.health.0);
+}
+
+/// Says how the ticks differ from the recorded ones.
+fn compare(recorded: &[TickRecord], rendered: &[TickRecord]) -> Result<(), Failure> {
+    if recorded.is_empty() {
+        return Ok(());
+    }
+    let (mut differing, mut first) = (0usize, None);
+    let (mut force, mut torque, mut depth) = (0.0f64, 0.0f64, 0.0f64);
+    for (old, new) in recorded.iter().zip(rendered) {
+        // Bit for bit, NaN and the sign of zero included; what was measured is no part of it.
+        let measured = TickRecord { wakeup_ns: old.wakeup_ns, compute_ns: old.compute_ns, ..*new };
+        if format!("{measured:?}") != format!("{old:?}") {
+            differing += 1;
+            first.get_or_insert(old.input.sequence);
+            force = force.max((old.out_wrench.force - new.out_wrench.force).length());
+            torque = torque.max((old.out_wrench.torque - new.out_wrench.torque).length());
+            depth = depth.max((old.depth - new.depth).abs());
+        }
+    }
+    let n = recorded.len();
+    match first {
+        None => say(&format!("{n} ticks, all identical to the recorded ones")),
+        Some(first) => say(&format!(
+            "{n} ticks, {differing} differ from the recorded ones, first at tick {first}; \
+             at most {force:.3e} N, {torque:.3e} N.m, depth {depth:.3e} m"
+        )),
+    }
 }

@@ -19,10 +19,15 @@ impl StepTime {
     /// Runs `step` over all inputs, from a copy of `fresh` each time. The mean is the best of five passes, each timed
     /// as a whole; the percentiles come from steps timed one by one, less the clock's own cost.
     pub fn measure<S: Clone, I, O>(fresh: &S, inputs: &[I], step: impl Fn(&mut S, &I) -> O) -> Self {
+        Self::measure_from(|| fresh.clone(), inputs, step)
+    }
+
+    /// The same for a state that is made anew for each pass by `fresh`, which is not timed.
+    pub fn measure_from<S, I, O>(fresh: impl Fn() -> S, inputs: &[I], step: impl Fn(&mut S, &I) -> O) -> Self {
         let n = inputs.len();
         let mut mean = f64::INFINITY;
         for _ in 0..PASSES {
-            let mut state = fresh.clone();
+            let mut state = fresh();
             let start = Instant::now();
             for input in inputs {
                 black_box(step(&mut state, black_box(input)));
@@ -30,7 +35,7 @@ impl StepTime {
             mean = mean.min(start.elapsed().as_nanos() as f64 / n.max(1) as f64);
         }
         let clock = clock_cost();
-        let mut state = fresh.clone();
+        let mut state = fresh();
         let mut single: Vec<f64> = Vec::with_capacity(n);
         for input in inputs {
             let start = Instant::now();

