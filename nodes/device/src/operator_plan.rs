@@ -13,6 +13,8 @@ pub struct Waypoint {
     pub guard: f64,
     /// Radius of a small circling search across the plan's `up`, metres.
     pub wiggle: f64,
+    /// Amplitude of the search's turning to and fro about `up`, rad.
+    pub wiggle_turn: f64,
 }
 
 /// What the simulated operator intends: waypoints, repeated over and over.
@@ -71,7 +73,7 @@ pub(crate) fn turned_about(pose: &Pose, tip_a: DVec3, turn: DVec3) -> Pose {
 impl OperatorPlan {
     /// A peg into its hole as a person does it: comes down tilted beside the hole, touches, rights the peg while pressing
     /// it on the plate, slides it over the hole with a small search, lets it drop in and pushes it to the bottom, holds
-    /// it there, and pulls it out again. About 9 s.
+    /// it there, and pulls it out again. About 8 s.
     ///
     /// `seated` is the pose of A at the bottom, `tip_a` the middle of the peg's lower end in A, `up` (unit) the way out,
     /// `depth` how deep the hole is and `slide` leads from the hole to where the plate is touched first (metres, base frame).
@@ -81,16 +83,17 @@ impl OperatorPlan {
         let tilt = up.cross(slide).normalize_or(up.any_orthonormal_vector()) * 10f64.to_radians();
         let tilted = |pose: Pose| turned_about(&pose, tip_a, tilt);
         let clear = depth + 0.03;
-        let go = |pose, duration| Waypoint { pose, duration, guard: f64::INFINITY, wiggle: 0.0 };
+        let go = |pose, duration| Waypoint { pose, duration, guard: f64::INFINITY, wiggle: 0.0, wiggle_turn: 0.0 };
+        let search = |pose, duration| Waypoint { wiggle: 4e-4, wiggle_turn: 0.05, ..go(pose, duration) };
         let waypoints = vec![
-            go(tilted(at(depth + 0.012, slide)), 1.0),
-            Waypoint { guard: 1.2, ..go(tilted(at(depth - PRESS, slide)), 1.0) },
-            go(at(depth - PRESS, slide), 0.7),
-            Waypoint { wiggle: 3e-4, ..go(at(depth - PRESS, DVec3::ZERO), 1.3) },
-            Waypoint { wiggle: 3e-4, ..go(at(-PRESS, DVec3::ZERO), 1.2) },
-            go(at(-PRESS, DVec3::ZERO), 1.0),
-            go(at(clear, DVec3::ZERO), 1.3),
-            go(at(clear, slide), 0.8),
+            go(tilted(at(depth + 0.012, slide)), 0.8),
+            Waypoint { guard: 1.2, ..go(tilted(at(depth - PRESS, slide)), 0.8) },
+            go(at(depth - PRESS, slide), 0.6),
+            go(at(depth - PRESS, DVec3::ZERO), 0.9),
+            search(at(-PRESS, DVec3::ZERO), 2.2),
+            go(at(-PRESS, DVec3::ZERO), 0.8),
+            go(at(clear, DVec3::ZERO), 1.2),
+            go(at(clear, slide), 0.7),
         ];
         Self { start: at(clear, slide), waypoints, tip_a, up }
     }
@@ -109,7 +112,7 @@ impl OperatorPlan {
         let tilted = |pose: Pose, angle: f64| {
             turned_about(&pose, tip_a, DVec3::new(1.0, 0.4, 0.0).normalize() * angle.to_radians())
         };
-        let go = |pose, duration| Waypoint { pose, duration, guard: f64::INFINITY, wiggle: 0.0 };
+        let go = |pose, duration| Waypoint { pose, duration, guard: f64::INFINITY, wiggle: 0.0, wiggle_turn: 0.0 };
         let touch = |pose, duration| Waypoint { guard: 1.0, ..go(pose, duration) };
         let waypoints = vec![
             touch(tilted(at(-PRESS, here), 12.0), 1.4),
@@ -148,8 +151,10 @@ impl OperatorPlan {
             if !w.pose.is_valid() {
                 return bad(format!("waypoint {n}: the pose is not valid"));
             }
-            if !(w.duration > 0.0 && w.duration.is_finite() && w.guard > 0.0 && w.wiggle >= 0.0 && w.wiggle < 0.1) {
-                return bad(format!("waypoint {n}: duration and guard must be > 0, wiggle 0 to 0.1 m"));
+            if !(w.duration > 0.0 && w.duration.is_finite() && w.guard > 0.0 && w.wiggle >= 0.0 && w.wiggle < 0.1)
+                || !(w.wiggle_turn >= 0.0 && w.wiggle_turn < 1.0)
+            {
+                return bad(format!("waypoint {n}: duration and guard must be > 0, wiggle 0 to 0.1 m and 0 to 1 rad"));
             }
         }
         Ok(())

@@ -2,7 +2,7 @@ use crate::arm::Arm;
 use crate::operator_plan::turned_about;
 use crate::stroke::Stroke;
 use crate::tremor::Tremor;
-use crate::{DeviceSpec, HapticDevice, OperatorConfig, OperatorError, OperatorPlan, Sample};
+use crate::{DeviceSpec, HapticDevice, OperatorConfig, OperatorError, OperatorPlan, Sample, Waypoint};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use spatial::{DVec3, Pose, Stamp, Twist, Wrench};
@@ -30,6 +30,8 @@ pub struct SimulatedOperator {
     /// This round's error of aim, and how the part is held askew.
     aim: DVec3,
     askew: DVec3,
+    /// How far the hand has yielded to what it feels: metres across `up`, and rad.
+    yielded: (DVec3, DVec3),
     felt: Wrench,
     last_read: Option<Stamp>,
     /// Time that was read but fills no whole step yet, ns.
@@ -41,8 +43,24 @@ const STEP_NS: i64 = 100_000;
 const STEP: f64 = STEP_NS as f64 * 1e-9;
 /// The most time that one call makes up for: a longer gap (a clock step, a stopped process) is time that did not pass.
 const MOST_NS: i64 = 50_000_000;
-/// The circling search, Hz.
-const WIGGLE_HZ: f64 = 1.5;
+/// The circling search, and its turning to and fro, Hz: apart, so that they meet at every phase.
+const WIGGLE_HZ: f64 = 1.9;
+const WIGGLE_TURN_HZ: f64 = 1.3;
+/// A hand does not insist: what it intends gives way to a lasting wrench, m/(N.s) and rad/(N.m.s), ...
+const YIELD: (f64, f64) = (1.5e-3, 6.0);
+/// ... forgets that at this rate, 1/s, ...
+const FORGET: f64 = 0.5;
+/// ... and gives way no further than this, metres and rad.
+const YIELD_MOST: (f64, f64) = (1.5e-3, 0.07);
+
+/// Where the search takes the intention: metres, m/s, rad, rad/s.
+#[derive(Clone, Copy, Debug, Default)]
+struct Search {
+    shift: DVec3,
+    shift_rate: DVec3,
+    turn: DVec3,
+    turn_rate: DVec3,
+}
 
 impl SimulatedOperator {
     /// An operator who starts at rest at the plan's start.
@@ -67,6 +85,7 @@ impl SimulatedOperator {
             steps: 0,
             aim: DVec3::ZERO,
             askew: DVec3::ZERO,
+            yielded: (DVec3::ZERO, DVec3::ZERO),
             felt: Wrench::ZERO,
             last_read: None,
             rest_ns: 0,
@@ -109,9 +128,13 @@ impl SimulatedOperator {
         let t = self.stroke_steps as f64 * STEP;
         let (on_path, twist) = self.stroke.at(t);
         let w = self.plan.waypoints[self.waypoint];
-        let (wiggle, wiggle_speed) = self.wiggle(w.wiggle);
-        let wanted = Pose::new(on_path.translation + wiggle, on_path.rotation);
-        let wanted_twist = Twist { linear: twist.linear + wiggle_speed, ..twist };
+        let search = self.search(&w);
+        self.give_way();
+        let (shift, turn) = (self.yielded.0 + search.shift, self.yielded.1 + search.turn);
+        let wanted = turned_about(&on_path, self.plan.tip_a, turn);
+        let wanted = Pose::new(wanted.translation + shift, wanted.rotation);
+        let wanted_twist =
+            Twist { linear: twist.linear + search.shift_rate, angular: twist.angular + search.turn_rate };
         let push = self.felt + self.tremor.step();
         self.arm.step(&wanted, &wanted_twist, &push, STEP);
         if t >= self.stroke.duration() || self.felt.force.length() > w.guard {
@@ -123,23 +146,35 @@ impl SimulatedOperator {
         }
     }
 
-    /// Offset and speed of the circling search; it swells and fades with the stroke.
-    fn wiggle(&self, radius: f64) -> (DVec3, DVec3) {
-        if radius <= 0.0 {
-            return (DVec3::ZERO, DVec3::ZERO);
-        }
-        let omega = std::f64::consts::TAU * WIGGLE_HZ;
+    /// Lets the intention follow the felt wrench a little.
+    fn give_way(&mut self) {
+        let across = self.felt.force.reject_from_normalized(self.plan.up);
+        let (shift, turn) = self.yielded;
+        let shift = shift + (across * YIELD.0 - shift * FORGET) * STEP;
+        let turn = turn + (self.felt.torque * YIELD.1 - turn * FORGET) * STEP;
+        self.yielded = (shift.clamp_length_max(YIELD_MOST.0), turn.clamp_length_max(YIELD_MOST.1));
+    }
+
+    /// The search's offset and its rate; it swells and fades with the stroke.
+    fn search(&self, waypoint: &Waypoint) -> Search {
         let t = self.stroke_steps as f64 * STEP;
-        let (swell_sin, swell_cos) = (std::f64::consts::PI * (t / self.stroke.duration()).min(1.0)).sin_cos();
+        if waypoint.wiggle == 0.0 && waypoint.wiggle_turn == 0.0 {
+            return Search::default();
+        }
+        let fade = std::f64::consts::PI / self.stroke.duration();
+        let (swell, swell_rate) = ((fade * t).sin().max(0.0), (fade * t).cos() * fade);
+        let (omega, omega_turn) = (std::f64::consts::TAU * WIGGLE_HZ, std::f64::consts::TAU * WIGGLE_TURN_HZ);
         let (sin, cos) = (omega * t).sin_cos();
+        let (turn_sin, turn_cos) = (omega_turn * t).sin_cos();
         let x = self.plan.up.any_orthonormal_vector();
         let y = self.plan.up.cross(x);
-        let around = x * cos + y * sin;
-        let swell_rate = swell_cos * std::f64::consts::PI / self.stroke.duration();
-        (
-            around * (radius * swell_sin),
-            around * (radius * swell_rate) + (y * cos - x * sin) * (radius * swell_sin * omega),
-        )
+        let (around, ahead) = (x * cos + y * sin, (y * cos - x * sin) * omega);
+        Search {
+            shift: around * (waypoint.wiggle * swell),
+            shift_rate: (around * swell_rate + ahead * swell) * waypoint.wiggle,
+            turn: self.plan.up * (waypoint.wiggle_turn * swell * turn_sin),
+            turn_rate: self.plan.up * (waypoint.wiggle_turn * (swell_rate * turn_sin + swell * turn_cos * omega_turn)),
+        }
     }
 
     /// Where the hand is, A in the base frame.
@@ -148,7 +183,7 @@ impl SimulatedOperator {
         self.arm.pose
     }
 
-    /// Rounds of the plan that were finished, and the waypoint that the hand heads for.
+    /// Index of the waypoint that the hand heads for.
     #[must_use]
     pub fn waypoint(&self) -> usize {
         self.waypoint
