@@ -5,6 +5,9 @@ use spatial::{DVec3, Pose, Twist, Wrench};
 /// without a jump of the torque.
 const ONSET: f64 = 5e-5;
 
+/// Squares of rates below this are rest: a filter that runs out into denormal numbers is slow.
+const TINY: f64 = 1e-30;
+
 /// The damping half of the virtual coupling between the hand and the proxy. Its spring is the law's own wrench.
 ///
 /// What is damped is the rate at which the coupling stretches, not the hand: sliding along a face and moving freely
@@ -39,7 +42,15 @@ impl Coupling {
         let share = low_pass_share(cutoff, dt);
         self.rate.0 += ((stretch.0 - last.0) / dt - self.rate.0) * share;
         self.rate.1 += ((stretch.1 - last.1) / dt - self.rate.1) * share;
+        if self.rate.0.length_squared() < TINY && stretch.0 == last.0 {
+            self.rate.0 = DVec3::ZERO;
+        }
+        if self.rate.1.length_squared() < TINY && stretch.1 == last.1 {
+            self.rate.1 = DVec3::ZERO;
+        }
         if law.depth <= 0.0 && stretch.0 == DVec3::ZERO && stretch.1 == DVec3::ZERO {
+            // Nothing is stretched: no use to let the filter run out into ever smaller numbers.
+            self.rate = (DVec3::ZERO, DVec3::ZERO);
             return Wrench::ZERO;
         }
         let turn = match gains.law {

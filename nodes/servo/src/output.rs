@@ -3,7 +3,7 @@ use crate::config::PassivityConfig;
 use haptics::{
     Coupling, Displacement, Gains, LawKind, LawOutput, Limiter, Passivity, PassivityLimits, returnable_energy,
 };
-use spatial::{Pose, Twist, Wrench};
+use spatial::{DVec3, Pose, Twist, Wrench};
 
 /// Time in which force fades when the clutch is taken, s.
 const CLUTCH_FADE: f64 = 0.02;
@@ -38,6 +38,12 @@ pub struct Rendered<'a> {
     pub enabled: bool,
     /// Corner frequency of velocities, Hz.
     pub cutoff: f64,
+}
+
+/// The part of a motion along a force, all of it if there is none: sliding along a face is not to be slowed down.
+fn along(motion: DVec3, force: DVec3) -> DVec3 {
+    let square = force.length_squared();
+    if square > 0.0 { force * (motion.dot(force) / square) } else { motion }
 }
 
 /// From the law's wrench to the device's: damping, ramp, passivity, limits, and nothing at all when anything is wrong.
@@ -130,7 +136,15 @@ impl Output {
         } else {
             (0.0, 0.0)
         };
-        self.passivity.control(r.moving, stiffness, dt, &limits)
+        if r.clutched {
+            // The hand is on its own way; what it moves is no motion of the part.
+            return Wrench::ZERO;
+        }
+        let along = Displacement {
+            linear: along(r.moving.linear, r.law.wrench.force),
+            angular: along(r.moving.angular, r.law.wrench.torque),
+        };
+        self.passivity.control(&along, stiffness, dt, &limits)
     }
 
     /// No force at once, and from zero again afterwards.
