@@ -59,40 +59,35 @@ impl fmt::Display for PrincipalContact {
     }
 }
 
-/// A principal contact and the depth of its deepest basic contact, metres, `> 0` inside.
-pub(crate) type Touch = (PrincipalContact, f64);
-
 /// The principal contacts of a formation in a fixed order. `rotation` is A's in W; with the geometry in `book` faces
 /// that lie in one plane become one, and what is part of a larger contact is left out.
 pub(crate) fn principal_contacts(
     formation: &ContactFormation,
     rotation: DQuat,
     book: Option<&FeatureBook>,
-) -> Vec<Touch> {
+) -> Vec<PrincipalContact> {
     let points = formation.points();
-    let mut found: Vec<Touch> = Vec::new();
+    let mut found: Vec<PrincipalContact> = Vec::new();
     for (i, first) in points.iter().enumerate() {
         let is_same_pair = |p: &&ContactPoint| p.part_a == first.part_a && p.piece_b == first.piece_b;
         if points[..i].iter().any(|p| is_same_pair(&p)) {
             continue;
         }
         let group: Vec<&ContactPoint> = points.iter().filter(is_same_pair).collect();
-        let depth = group.iter().map(|p| -p.distance).fold(f64::NEG_INFINITY, f64::max);
         let mut contact = of_pair(&group, rotation, book);
         if let Some(book) = book {
             (contact.part_a, contact.feature_a) = book.a.representative(contact.part_a, contact.feature_a);
             (contact.piece_b, contact.feature_b) = book.b.representative(contact.piece_b, contact.feature_b);
         }
-        match found.iter_mut().find(|(c, _)| *c == contact) {
-            Some((_, deepest)) => *deepest = deepest.max(depth),
-            None => found.push((contact, depth)),
+        if !found.contains(&contact) {
+            found.push(contact);
         }
     }
     if let Some(book) = book {
         let all = found.clone();
-        found.retain(|(c, _)| !all.iter().any(|(other, _)| other != c && book.is_part_of(c, other)));
+        found.retain(|c| !all.iter().any(|other| other != c && book.is_part_of(c, other)));
     }
-    found.sort_by_key(|f| f.0);
+    found.sort();
     found
 }
 
@@ -121,7 +116,16 @@ fn of_pair(group: &[&ContactPoint], rotation: DQuat, book: Option<&FeatureBook>)
             feature_b = book.b.complete(piece_b, wants_face, &ids.vertices_b, normal_w);
         }
     }
-    PrincipalContact { part_a, feature_a, piece_b, feature_b, kind }
+    let contact = PrincipalContact { part_a, feature_a, piece_b, feature_b, kind };
+    match book.and_then(|b| b.flush_faces(&contact, rotation, normal_w)) {
+        Some((face_a, face_b)) => PrincipalContact {
+            feature_a: Feature::Face(face_a),
+            feature_b: Feature::Face(face_b),
+            kind: FormationKind::FaceFace,
+            ..contact
+        },
+        None => contact,
+    }
 }
 
 fn single(contact: &BasicContact) -> (Feature, Feature) {

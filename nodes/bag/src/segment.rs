@@ -214,11 +214,13 @@ impl Segmenter {
         self.current.take().map(|c| Segment { end: left.unwrap_or(c.end), ..c })
     }
 
-    /// The principal contacts of a tick, debounced in depth.
+    /// The principal contacts of a tick, debounced in depth: a new one needs a hand that is deep enough. (Not the depth of
+    /// the contact by itself: laws that hold a proxy state distances at the proxy, where they vanish.)
     fn contacts(&mut self, tick: &TickRecord) -> Vec<PrincipalContact> {
-        let touches = principal_contacts(&tick.formation, tick.hip.rotation, self.book.as_ref());
-        let counts = |(c, depth): &(PrincipalContact, f64)| *depth >= self.options.min_depth || self.held.contains(c);
-        let contacts: Vec<PrincipalContact> = touches.into_iter().filter(counts).map(|(c, _)| c).collect();
+        let mut contacts = principal_contacts(&tick.formation, tick.proxy.rotation, self.book.as_ref());
+        if tick.depth < self.options.min_depth {
+            contacts.retain(|c| self.held.contains(c));
+        }
         self.held.clone_from(&contacts);
         contacts
     }
