@@ -187,9 +187,21 @@ impl DepthLaw {
             }
             let (part, piece) = (t.part as usize, t.piece as usize);
             t.tie *= if was_multiple { 1.5 } else { 1.0 };
-            let reach = t.plane.distance + if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
+            let limit = t.plane.distance + if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
             t.first = self.points.len();
-            self.clipper.region(solids, part, piece, placed, &t.plane, reach, &mut self.points);
+            self.clipper.region(solids, part, piece, placed, &t.plane, f64::INFINITY, &mut self.points);
+            // How deep each contact is under Near's plane: along Near's normal none can be deeper than Near.
+            let normal = t.plane.normal_w;
+            let mut kept = t.first;
+            for k in t.first..self.points.len() {
+                let mut p = self.points[k];
+                p.gap = normal.dot(p.span_w);
+                if p.gap <= limit {
+                    self.points[kept] = p;
+                    kept += 1;
+                }
+            }
+            self.points.truncate(kept);
             t.end = self.points.len();
             self.places.clear();
             self.places.extend(self.points[t.first..t.end].iter().map(|p| p.point_w));

@@ -13,9 +13,8 @@ use spatial::{DVec3, Pose, Wrench};
 /// Re-linearisations in one tick while steps are not cut short; with cut steps (fast motion), in all.
 const ROUNDS: usize = 4;
 const ROUNDS_FAST: usize = 16;
-/// Steps below this (metres at the body's reach) change the contact geometry by less than `1e-11` m: applied without
-/// looking again.
-const SMALL: f64 = 1e-6;
+/// Steps below this (metres at the body's reach) are applied to the contacts seen, without looking again.
+const SMALL: f64 = 1e-8;
 /// Largest turn of one linearised step, radians.
 const TURN: f64 = 0.05;
 

@@ -134,11 +134,18 @@ impl View {
         self.pairs.push(InReach { part: s.part, piece: s.piece, first, end: self.points.len() });
     }
 
-    /// Moves the gaps along with a small step to `pose`.
+    /// Moves the contacts along with a small step to `pose`, to first order.
     pub fn shift(&mut self, step: &Step, pose: &Pose) {
         let mut deepest = f64::INFINITY;
         for p in &mut self.points {
-            p.gap += p.normal_w.dot(step.dp + step.dtheta.cross(p.point_w - pose.translation));
+            let motion = step.dp + step.dtheta.cross(p.point_w - pose.translation);
+            p.gap += p.normal_w.dot(motion);
+            match p.contact {
+                BasicContact::TypeA { .. } => p.normal_w += step.dtheta.cross(p.normal_w),
+                BasicContact::TypeB { .. } => p.point_w += motion - p.normal_w * p.normal_w.dot(motion),
+                // Between the two: its error is of the order of the step, which is below a hundredth of a micrometre.
+                BasicContact::TypeC { .. } => {}
+            }
             deepest = deepest.min(p.gap);
         }
         if self.penetration > 0.0 {

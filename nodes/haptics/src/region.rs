@@ -14,6 +14,8 @@ pub(crate) struct RegionPoint {
     pub normal_w: DVec3,
     /// Signed distance of A to B at this contact along the normal, metres; `< 0` is penetration.
     pub gap: f64,
+    /// From `point_w` to A's point of the contact, metres, axes of W.
+    pub span_w: DVec3,
 }
 
 /// The pose of A in the form the geometry wants.
@@ -87,6 +89,13 @@ impl Clipper {
         let (a, b) = (solids.part(part), solids.piece(piece));
         let same = SAME_POINT * (a.size() + b.size());
         let first = out.len();
+        // Near's own contact first, at its exact place, when its features face each other.
+        let own = facing_point(a, b, placed, near, 1e3 * same);
+        if let Some(point_w) = own.filter(|_| near.distance <= reach) {
+            let (gap, normal_w) = (near.distance, near.normal_w);
+            let span_w = normal_w * gap;
+            push(RegionPoint { contact: near.contact, point_w, normal_w, gap, span_w }, reach, same, first, out);
+        }
         let Some((face_a, face_b)) = most_parallel(solids, part, piece, &placed.r, near) else { return };
         let plane_b = b.face_plane(face_b);
         let normal_a = -(placed.r * a.face_plane(face_a).normal);
@@ -102,13 +111,15 @@ impl Clipper {
                 if height * lean > reach && height > reach {
                     continue;
                 }
-                let foot = point - plane_b.normal * height;
+                let span_w = plane_b.normal * height;
+                let foot = point - span_w;
                 let found = match (before, leaving) {
                     (Side::A(_), Side::A(i)) => RegionPoint {
                         contact: BasicContact::TypeB { vertex_a: ring_a.0[i as usize], face_b },
                         point_w: foot,
                         normal_w: plane_b.normal,
                         gap: height,
+                        span_w,
                     },
                     (Side::B(i), Side::B(j)) => {
                         // The corner that the two sides share; A's ring runs against B's, so they come in either order.
@@ -124,6 +135,7 @@ impl Clipper {
                             point_w: at,
                             normal_w: normal_a,
                             gap: height * lean,
+                            span_w,
                         }
                     }
                     (Side::A(i), Side::B(j)) | (Side::B(j), Side::A(i)) => {
@@ -132,20 +144,19 @@ impl Clipper {
                         }
                         let (edge_a, edge_b) = (ring_a.1[i as usize], ring_b.1[j as usize]);
                         let (normal_w, gap) = crossing(a, edge_a, b, edge_b, &placed.r, plane_b.normal, height);
-                        RegionPoint { contact: BasicContact::TypeC { edge_a, edge_b }, point_w: foot, normal_w, gap }
+                        RegionPoint {
+                            contact: BasicContact::TypeC { edge_a, edge_b },
+                            point_w: foot,
+                            normal_w,
+                            gap,
+                            span_w,
+                        }
                     }
                 };
-                push(found, reach, same, first, out);
+                if own.is_none() || found.contact != near.contact {
+                    push(found, reach, same, first, out);
+                }
             }
-        }
-        // Near's own contact, when its features face each other: under rounding the clipping may lose it.
-        let listed = out[first..].iter().any(|p| p.contact == near.contact);
-        if near.distance <= reach
-            && !listed
-            && let Some(point_w) = facing_point(a, b, placed, near, 1e3 * same)
-        {
-            let p = RegionPoint { contact: near.contact, point_w, normal_w: near.normal_w, gap: near.distance };
-            push(p, reach, same, first, out);
         }
     }
 

@@ -1,0 +1,97 @@
+//! Slow closed loops give no energy; friction only takes it.
+
+mod support;
+
+use haptics::{Gains, LawKind, RenderLaw, Renderer};
+use spatial::{DVec3, Pose};
+use support::{block, cuboid, mm, pose, world};
+
+/// Work done on the hand along the closed path (J), and the sum of its absolute values.
+fn work(w: &std::sync::Arc<cspace::World>, gains: &Gains, path: &dyn Fn(f64) -> Pose, n: u32) -> (f64, f64) {
+    let mut r = Renderer::new(w.clone());
+    // From outside, in the loop's first orientation, and once around: the loop starts where it ends.
+    let first = path(0.0);
+    for i in 0..=1000 {
+        r.render(
+            &Pose::new(first.translation + DVec3::Z * 3e-3 * (1.0 - f64::from(i) / 1e3), first.rotation),
+            gains,
+            1.0,
+        );
+    }
+    let mut last: Option<(Pose, spatial::Wrench)> = None;
+    let (mut sum, mut size) = (0.0, 0.0);
+    for lap in 0..2 {
+        for i in 0..=n {
+            let p = path(f64::from(i) / f64::from(n));
+            let out = r.render(&p, gains, 1.0).wrench;
+            if let (1, Some((q, before))) = (lap, last) {
+                let mean = (out + before) * 0.5;
+                let done = mean.force.dot(p.translation - q.translation) + mean.torque.dot(q.rotation_to(&p));
+                sum += done;
+                size += done.abs();
+            }
+            last = Some((p, out));
+        }
+    }
+    (sum, size)
+}
+
+#[test]
+fn closed_loops_return_nothing_without_friction() {
+    let tau = std::f64::consts::TAU;
+    let floor = cuboid(mm(-40.0, -40.0, -20.0), mm(40.0, 40.0, 0.0));
+    let wall = cuboid(mm(15.0, -40.0, -20.0), mm(40.0, 40.0, 40.0));
+    let w = world(block(mm(10.0, 8.0, 6.0)), vec![floor, wall]);
+    let in_contact = |s: f64| {
+        let (c, d) = ((tau * s).cos(), (tau * s).sin());
+        // Pressed, slid, turned and tilted, always on the floor and the wall.
+        pose(11.0 + 0.4 * c, 3.0 * d, 2.0 + 0.3 * d, 0.02 * c, 0.03 * d, 0.1 * c)
+    };
+    let gains = Gains { law: LawKind::Proxy, proxy_speed: f64::INFINITY, ..Gains::default() };
+    // The trapezoid rule errs by h^2: extrapolate from two step lengths (Richardson).
+    let (coarse, _) = work(&w, &gains, &in_contact, 20_000);
+    let (fine, size) = work(&w, &gains, &in_contact, 40_000);
+    println!("trapezoid rule: {coarse:e} and {fine:e} J");
+    let sum = (4.0 * fine - coarse) / 3.0;
+    println!("proxy: {sum:e} J of {size:e} J moved");
+    // What is left is the proxy's own convergence: it is always a loss, never a gain.
+    assert!(sum <= 1e-9 * size && sum >= -1e-6 * size, "{sum:e} of {size:e}");
+    // Translation only: the piecewise linear force of the single contact makes the trapezoid rule exact.
+    let sliding =
+        |s: f64| pose(3.0 * (tau * s).cos(), 3.0 * (tau * s).sin(), 2.0 + 0.5 * (tau * s).sin(), 0.3, 0.2, 0.1);
+    for law in [LawKind::Paper, LawKind::Pstar, LawKind::Blended, LawKind::Proxy] {
+        let gains = Gains { law, ..gains };
+        let (sum, size) = work(&w, &gains, &sliding, 4000);
+        println!("{law:?}, sliding: {sum:e} J of {size:e} J moved");
+        let loss = if law == LawKind::Proxy { 1e-8 } else { 1e-9 };
+        assert!(sum <= 1e-9 * size && sum >= -loss * size, "{law:?}: {sum:e} of {size:e}");
+    }
+}
+
+#[test]
+fn friction_only_takes_energy_and_holds_below_the_cone() {
+    let w = world(block(mm(10.0, 8.0, 6.0)), vec![cuboid(mm(-40.0, -40.0, -20.0), mm(40.0, 40.0, 0.0))]);
+    let gains = Gains { friction_static: 0.5, friction_kinetic: 0.4, proxy_speed: f64::INFINITY, ..Gains::default() };
+    let tau = std::f64::consts::TAU;
+    for radius in [0.05, 0.5, 4.0] {
+        let circle = |s: f64| pose(radius * ((tau * s).cos() - 1.0), radius * (tau * s).sin(), 2.0, 0.0, 0.0, 0.0);
+        let (sum, size) = work(&w, &gains, &circle, 8000);
+        println!("circle of {radius} mm: {sum:e} J of {size:e} J moved");
+        assert!(sum <= 1e-9 * size, "{sum:e}");
+    }
+    // 1 mm deep is 1 N: pulled sideways, it sticks up to 0.5 N and slides with 0.4 N.
+    let mut r = Renderer::new(w);
+    let mut sideways = Vec::new();
+    r.render(&pose(0.0, 0.0, 4.0, 0.0, 0.0, 0.0), &gains, 1e-3);
+    for i in 0..=1000 {
+        r.render(&pose(0.0, 0.0, 4.0 - 2.0 * f64::from(i) / 1e3, 0.0, 0.0, 0.0), &gains, 1e-3);
+    }
+    for i in 0..=1000 {
+        let f = r.render(&pose(2.0 * f64::from(i) / 1e3, 0.0, 2.0, 0.0, 0.0, 0.0), &gains, 1e-3).wrench.force;
+        assert!((f.z - 1.0).abs() < 1e-6, "{f}");
+        sideways.push(-f.x);
+    }
+    let peak = sideways.iter().copied().fold(0.0, f64::max);
+    assert!(peak <= 0.5 + 1e-9 && peak > 0.495, "{peak}");
+    assert!((sideways[1000] - 0.4).abs() < 1e-6, "{}", sideways[1000]);
+}
