@@ -67,6 +67,21 @@ impl Recorder {
         Ok(Self::on(sink.open()?, sink.name(), subject, rates, options)?)
     }
 
+    /// Records to memory, at the rates of a file: for tests.
+    ///
+    /// # Errors
+    /// rerun refused the layout or the bodies.
+    #[doc(hidden)]
+    pub fn in_memory(
+        subject: Subject,
+        options: &Options,
+    ) -> Result<(Self, rerun::sink::MemorySinkStorage), InspectError> {
+        let file = Sink::File(std::path::PathBuf::new());
+        let (stream, storage) = crate::sink::builder(Duration::from_secs(2)).memory()?;
+        let rates = (file.frames_per_second(), file.polygon_bytes_per_second());
+        Ok((Self::on(stream, "memory".into(), subject, rates, options)?, storage))
+    }
+
     /// Records on a stream that is open already.
     pub(crate) fn on(
         stream: RecordingStream,
