@@ -8,8 +8,8 @@ use rerun::{GraphEdges, GraphNodes, RecordingStream, RecordingStreamResult, Rgba
 /// The applicability subgraph of the pair nearest to `x` (paper, Figure 3).
 pub(crate) const APPLICABILITY: &str = "/graph/applicability";
 
-/// Radius of the map, in the view's units: room for about 40 labels.
-const RADIUS: f32 = 330.0;
+/// Radii of the map, in the view's units. Labels are wider than high, and the view folds them when it is zoomed out.
+const RADIUS: [f32; 2] = [150.0, 85.0];
 
 /// Draws the applicability subgraph. Remembers what is drawn.
 #[derive(Default)]
@@ -43,7 +43,7 @@ impl ApplicabilityGraph {
         let mut positions = places;
         ids.push("title".into());
         colors.push(palette::solid(palette::PLAIN));
-        positions.push([0.0, -RADIUS * 2.25]);
+        positions.push([0.0, -RADIUS[1] * 2.3]);
         labels.truncate(ids.len());
         let nodes = GraphNodes::new(ids.iter().map(String::as_str))
             .with_positions(positions)
@@ -95,7 +95,7 @@ fn map(faces: &[CFacePolygon], middle: DVec3) -> Vec<[f32; 2]> {
         let at = DVec3::new(n.dot(right), -n.dot(up), 0.0) * stretch;
         // The far pole is a circle: keep it on the map.
         let at = if at.length() < 1e-6 && middle.dot(n) < 0.0 { DVec3::Y * 2.0 } else { at };
-        [at.x as f32 * RADIUS, at.y as f32 * RADIUS]
+        [at.x as f32 * RADIUS[0], at.y as f32 * RADIUS[1]]
     };
     faces.iter().map(|f| place(f.normal_w)).collect()
 }

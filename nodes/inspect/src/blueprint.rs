@@ -2,12 +2,13 @@ use crate::clock::{ROBOT_TIME, TICK};
 use crate::layout::{Node, View, send};
 use crate::sink::APPLICATION;
 use crate::subject::Subject;
-use crate::{applicability, contact_states, cspace_view, events, legend, physical, series};
+use crate::{applicability, contact_states, cspace_view, events, legend, palette, physical, series};
 use glam::DVec3;
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    EyeControls3D, LineGrid3D, PlotLegend, TextLogColumns, TimePanelBlueprint, VisibleTimeRanges, VisualBounds2D,
+    Background, EyeControls3D, LineGrid3D, PlotLegend, TextLogColumns, TimePanelBlueprint, VisibleTimeRanges,
+    VisualBounds2D,
 };
-use rerun::external::re_sdk_types::blueprint::components::{Corner2D, PanelState};
+use rerun::external::re_sdk_types::blueprint::components::{BackgroundKind, Corner2D, PanelState, PlayState};
 use rerun::external::re_sdk_types::datatypes::{TimeInt, TimeRange, TimeRangeBoundary, Utf8, VisibleTimeRange};
 use rerun::{RecordingStream, RecordingStreamResult};
 
@@ -27,7 +28,7 @@ impl Eye {
     /// Looks at a box from the front, right and above, so that it fills the picture.
     pub(crate) fn facing((low, high): (DVec3, DVec3)) -> Self {
         let target = 0.5 * (low + high);
-        let distance = 1.15 * (high - low).length().max(1e-6);
+        let distance = 0.98 * (high - low).length().max(1e-6);
         Self { position: target + DVec3::new(0.62, -0.68, 0.40) * distance, target }
     }
 
@@ -62,6 +63,7 @@ fn view_3d(title: &str, root: &str, eye: &Eye) -> View {
     View::new("3D", title, root)
         .with("EyeControls3D", eye.controls())
         .with("LineGrid3D", LineGrid3D::new().with_visible(false))
+        .with("Background", Background::new(BackgroundKind::SolidColor).with_color(palette::solid(palette::GROUND)))
 }
 
 fn legend_view() -> View {
@@ -83,8 +85,12 @@ fn log_view() -> View {
     )
 }
 
+/// Opens at the newest moment: the series are whole, and a live recording is followed.
 fn time_panel() -> TimePanelBlueprint {
-    TimePanelBlueprint::new().with_state(PanelState::Collapsed).with_timeline(ROBOT_TIME)
+    TimePanelBlueprint::new()
+        .with_state(PanelState::Collapsed)
+        .with_timeline(ROBOT_TIME)
+        .with_play_state(PlayState::Following)
 }
 
 /// The last seconds of the trail, on both time lines.
@@ -116,8 +122,8 @@ pub(crate) fn send_run(stream: &RecordingStream, eyes: &Eyes) -> RecordingStream
         Node::View(View::new("Graph", "Contact states of the run", contact_states::CONTACT_STATES)),
     ];
     let spaces = Node::Row(vec![(1.0, Node::View(physical)), (1.0, Node::View(cspace))]);
-    let bottom = Node::Row(vec![(1.0, Node::Tabs(graphs)), (1.0, Node::View(log_view()))]);
-    let left = Node::Column(vec![(5.6, spaces), (1.0, Node::View(legend_view())), (3.6, bottom)]);
+    let bottom = Node::Row(vec![(1.2, Node::Tabs(graphs)), (1.0, Node::View(log_view()))]);
+    let left = Node::Column(vec![(5.4, spaces), (1.25, Node::View(legend_view())), (3.6, bottom)]);
     let mut right: Vec<(f32, Node)> = plots.collect();
     right.push((0.75, Node::View(lanes)));
     let root = Node::Row(vec![(2.7, left), (1.0, Node::Column(right))]);

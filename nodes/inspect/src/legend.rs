@@ -7,30 +7,29 @@ use rerun::{Boxes2D, Points2D, RecordingStream, RecordingStreamResult};
 pub(crate) const LEGEND: &str = "/legend";
 
 /// Distance of two columns and of two rows, in the view's own units.
-const STEP: [f32; 2] = [20.0, 5.0];
+const STEP: [f32; 2] = [20.0, 3.4];
 const COLUMNS: usize = 5;
 
 /// Corners of the legend, `[x, y]` from and to.
 pub(crate) fn bounds() -> ([f64; 2], [f64; 2]) {
-    let rows = 2.0;
-    ([-2.0, f64::from(COLUMNS as f32 * STEP[0]) - 2.0], [-2.5, rows * f64::from(STEP[1]) - 2.5])
+    ([-1.5, f64::from(COLUMNS as f32 * STEP[0]) - 1.5], [-1.8, 5.2])
 }
 
 /// Explains every colour that the views use.
 pub(crate) fn open(stream: &RecordingStream, scale: &ArrowScale) -> RecordingStreamResult<()> {
-    let force = format!("force, {} mm per N", scale.force * 1e3);
-    let torque = format!("torque, {} mm per N.m", scale.torque * 1e3);
+    let force = format!("force, {} mm/N", scale.force * 1e3);
+    let torque = format!("torque, {} mm/N.m", scale.torque * 1e3);
     let entries: [(&str, palette::Rgb); 10] = [
         ("C-face in contact", palette::TOUCHING),
-        ("Near of its pair", palette::NEAR),
+        ("Near", palette::NEAR),
         ("local subgraph", palette::LOCAL),
-        ("other applicable C-face", palette::OTHER),
+        ("other applicable", palette::OTHER),
         ("obstacle", palette::OBSTACLE),
-        ("HIP: pose of the hand", palette::HIP),
-        ("SCP: pose that touches", palette::SCP),
+        ("HIP: hand", palette::HIP),
+        ("SCP: part", palette::SCP),
         (&force, palette::FORCE),
         (&torque, palette::TORQUE),
-        ("contact region, points", palette::TOUCHING),
+        ("contact region", palette::TOUCHING),
     ];
     draw(stream, &entries)
 }
@@ -39,11 +38,11 @@ pub(crate) fn open(stream: &RecordingStream, scale: &ArrowScale) -> RecordingStr
 pub(crate) fn open_overview(stream: &RecordingStream) -> RecordingStreamResult<()> {
     let entries = [
         ("part in the hand", palette::SCP),
-        ("obstacle, by its convex pieces", palette::OBSTACLE),
-        ("type A: face of A, vertex of B", palette::OTHER),
-        ("type B: vertex of A, face of B", palette::NEAR),
-        ("type C: edge of A, edge of B", palette::LOCAL),
-        ("several contacts at once", palette::TOUCHING),
+        ("obstacle, in pieces", palette::OBSTACLE),
+        ("A: face, vertex", palette::OTHER),
+        ("B: vertex, face", palette::NEAR),
+        ("C: edge, edge", palette::LOCAL),
+        ("several contacts", palette::TOUCHING),
     ];
     draw(stream, &entries)
 }
@@ -59,7 +58,8 @@ fn draw(stream: &RecordingStream, entries: &[(&str, palette::Rgb)]) -> Recording
         .with_colors(colors.clone())
         .with_radii([Radius::new_ui_points(7.0)]);
     stream.log_static(format!("{LEGEND}/discs"), &discs)?;
-    let texts = Points2D::new((0..entries.len()).map(|i| [place(i)[0] + 8.5, place(i)[1]]))
+    // A label stands below its point: the points are raised so that text and field are level.
+    let texts = Points2D::new((0..entries.len()).map(|i| [place(i)[0] + 8.0, place(i)[1] - 1.35]))
         .with_labels(entries.iter().map(|(text, _)| *text))
         .with_colors(colors)
         .with_radii([Radius::new_ui_points(0.1)])

@@ -26,6 +26,8 @@ pub(crate) const TORQUE: Rgb = [0x8A, 0x5A, 0xD8];
 pub(crate) const OBSTACLE: Rgb = [0x8C, 0x96, 0xA4];
 /// Text and lines that carry no meaning of their own.
 pub(crate) const PLAIN: Rgb = [0x80, 0x88, 0x92];
+/// The ground of the 3D views, dark in both themes of the viewer.
+pub(crate) const GROUND: Rgb = [0x17, 0x1B, 0x22];
 /// The three axes of a vector's components.
 pub(crate) const AXES: [Rgb; 3] = [[0xE0, 0x4A, 0x4A], [0x3C, 0xA9, 0x4C], [0x3D, 0x7C, 0xE8]];
 

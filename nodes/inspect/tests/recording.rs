@@ -3,9 +3,9 @@
 mod support;
 
 use inspect::{Options, Recorder, Sink, Subject, record_overview};
+use rerun::StoreKind;
 use rerun::log::Chunk;
 use rerun::log::LogMsg;
-use rerun::StoreKind;
 use servo::TickRecord;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -92,7 +92,10 @@ fn the_layout_travels_with_the_recording() {
     // Two spaces, the legend, five plots, the lanes, two graphs and the events.
     assert_eq!(views, 12);
     assert!(layout.contains_key("/viewport") && layout.contains_key("/time_panel"));
-    assert!(messages.iter().any(|m| matches!(m, LogMsg::BlueprintActivationCommand(_))), "the layout is not made active");
+    assert!(
+        messages.iter().any(|m| matches!(m, LogMsg::BlueprintActivationCommand(_))),
+        "the layout is not made active"
+    );
 }
 
 #[test]

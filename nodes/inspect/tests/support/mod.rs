@@ -53,7 +53,15 @@ pub fn tick(world: &World, sequence: u64, hip: Pose) -> TickRecord {
             for contact in near.contacts.iter().take(8) {
                 let point_w = contact_point(*contact, a, &fixed.polyhedron, &hip);
                 let (part_a, piece_b) = (part as u32, piece as u32);
-                formation.push(ContactPoint { part_a, piece_b, contact: *contact, point_w, normal_w: near.normal_w, distance, kind });
+                formation.push(ContactPoint {
+                    part_a,
+                    piece_b,
+                    contact: *contact,
+                    point_w,
+                    normal_w: near.normal_w,
+                    distance,
+                    kind,
+                });
             }
         }
     }
@@ -93,7 +101,8 @@ pub fn run(subject: &Subject, ticks: u64) -> Vec<TickRecord> {
         let z = 0.025 - 0.012 * (std::f64::consts::PI * s).sin();
         let x = -0.02 + 0.045 * s;
         let tilt = if s < 0.5 { 0.0 } else { 0.4 * (s - 0.5) };
-        let mut record = tick(&subject.world, sequence, Pose::new(DVec3::new(x, 0.002, z), DQuat::from_rotation_y(tilt)));
+        let mut record =
+            tick(&subject.world, sequence, Pose::new(DVec3::new(x, 0.002, z), DQuat::from_rotation_y(tilt)));
         if sequence == ticks / 2 {
             record.health.set(Health::INVALID);
         }
