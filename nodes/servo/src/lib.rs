@@ -14,6 +14,7 @@ mod record;
 mod sample_check;
 mod servo_handle;
 mod servo_loop;
+mod stability;
 mod tick;
 
 pub use aligned_device::AlignedDevice;
@@ -24,4 +25,5 @@ pub use loop_status::LoopStatus;
 pub use operator_scene::operator_plan;
 pub use record::{TickInput, TickRecord};
 pub use servo_handle::{LoopConfig, LoopError, Servo, ServoHandle, spawn};
+pub use stability::{StabilityFinding, check_stability, stability_findings};
 pub use tick::{Tick, renderer};

@@ -173,8 +173,8 @@ impl Default for Config {
             passivity: PassivityConfig { max_damping: 20.0, lever: 0.03, budget: 2e-3 },
             stability: StabilityConfig {
                 check: StabilityPolicy::Warn,
-                damping: 1.0,
-                rotation_damping: 1e-3,
+                damping: 3.0,
+                rotation_damping: 5e-3,
                 delay: 0.0,
             },
             realtime: RealtimeConfig { rate: 1000.0, priority: 80, cpu: -1, lock_memory: true },
