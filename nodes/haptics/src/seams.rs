@@ -1,6 +1,6 @@
 //! Seams between convex pieces of one body: which contacts are artefacts of the cutting.
 
-use cspace::{FaceId, Polyhedron};
+use cspace::{EdgeId, FaceId, Polyhedron};
 use spatial::DVec3;
 use std::sync::Arc;
 
@@ -32,8 +32,15 @@ pub(crate) struct Seams {
     neighbors: Vec<Vec<u32>>,
     /// For each piece the cover of its faces.
     cover: Vec<Vec<Cover>>,
+    /// For each piece and edge: whether a contact on it can be felt anywhere along it.
+    live_edges: Vec<Vec<bool>>,
+    /// For each piece, face and side: how much of the side the surface goes on beyond.
+    sides: Vec<Vec<Vec<Cover>>>,
     tolerance: f64,
 }
+
+/// Places along an edge where it is judged once and for all; what differs between them is judged in the tick.
+const SAMPLES: [f64; 7] = [1e-3, 0.1, 0.3, 0.5, 0.7, 0.9, 0.999];
 
 impl Seams {
     /// Of pieces given in one common frame.
@@ -60,7 +67,42 @@ impl Seams {
                 pieces[a].faces().map(|f| cover_of(&pieces[a], f, others(), tolerance)).collect()
             })
             .collect();
-        Self { pieces, neighbors, cover, tolerance }
+        let mut seams = Self { pieces, neighbors, cover, live_edges: Vec::new(), sides: Vec::new(), tolerance };
+        seams.live_edges = (0..n).map(|a| seams.find_live_edges(a)).collect();
+        seams.sides = (0..n).map(|a| seams.find_sides(a)).collect();
+        seams
+    }
+
+    fn find_live_edges(&self, piece: usize) -> Vec<bool> {
+        let p = &self.pieces[piece];
+        p.edges()
+            .map(|e| {
+                let edge = p.edge(e);
+                let [a, b] = edge.vertices.map(|v| p.vertex(v));
+                let [f, g] = edge.faces.map(|f| p.face_plane(f).normal);
+                SAMPLES.iter().any(|s| self.is_felt(piece, a.lerp(b, *s), (f + g).normalize_or_zero()))
+            })
+            .collect()
+    }
+
+    fn find_sides(&self, piece: usize) -> Vec<Vec<Cover>> {
+        let p = &self.pieces[piece];
+        let of_side = |face: FaceId, side: usize| {
+            let ring = p.face_vertices(face);
+            let (a, b) = (p.vertex(ring[side]), p.vertex(ring[(side + 1) % ring.len()]));
+            let on = SAMPLES.iter().filter(|s| self.side_goes_on(piece, face, side, a.lerp(b, **s))).count();
+            match on {
+                0 => Cover::Open,
+                n if n == SAMPLES.len() => Cover::Internal,
+                _ => Cover::Partial,
+            }
+        };
+        p.faces().map(|f| (0..p.face_vertices(f).len()).map(|s| of_side(f, s)).collect()).collect()
+    }
+
+    /// Whether a contact on the edge can be felt at all.
+    pub fn is_live_edge(&self, piece: usize, edge: EdgeId) -> bool {
+        self.live_edges[piece][edge.index()]
     }
 
     /// How much of the face lies inside other pieces.
@@ -82,6 +124,14 @@ impl Seams {
     /// Whether the face's surface goes on in another piece beyond its side `side` at `point` (a point of that side), flat or
     /// rising: then the side is no border of the solid.
     pub fn goes_on(&self, piece: usize, face: FaceId, side: usize, point: DVec3) -> bool {
+        match self.sides[piece][face.index()][side] {
+            Cover::Open => false,
+            Cover::Internal => true,
+            Cover::Partial => self.side_goes_on(piece, face, side, point),
+        }
+    }
+
+    fn side_goes_on(&self, piece: usize, face: FaceId, side: usize, point: DVec3) -> bool {
         let p = &self.pieces[piece];
         let ring = p.face_vertices(face);
         let normal = p.face_plane(face).normal;

@@ -115,21 +115,24 @@ impl Solids {
             let vertex_b = b.support(-(placed.r * a.face_plane(face_a).normal));
             offer(BasicContact::TypeA { face_a, vertex_b });
         }
+        // No plane is nearer than Near's: a tie cannot be bettered.
+        if best.is_some_and(|f| f.distance >= near.distance - 1e-12) {
+            return best;
+        }
         // Edge contacts: walk from the best face contact, and from Near's own features, over adjacent edges.
         for start in [best.map(|f| f.contact), Some(near.contact)].into_iter().flatten() {
             let mut at = start;
             for _ in 0..4 {
                 let from = best;
-                for edge_a in edges_of_a(a, &at) {
-                    for edge_b in edges_of_b(b, &at) {
+                for edge_a in edges_of_a(a, &at).iter().filter(|e| self.moving.is_live_edge(part, **e)) {
+                    for edge_b in edges_of_b(b, &at).iter().filter(|e| self.fixed.is_live_edge(piece, **e)) {
                         let c = BasicContact::TypeC { edge_a: *edge_a, edge_b: *edge_b };
-                        if is_applicable(c, a, b, pose.rotation) {
-                            let face = CFace::at(c, a, b, pose);
-                            if best.is_none_or(|o| face.distance > o.distance)
-                                && self.is_felt_plane(part, piece, pose, placed, &face)
-                            {
-                                best = Some(face);
-                            }
+                        let face = CFace::at(c, a, b, pose);
+                        if best.is_none_or(|o| face.distance > o.distance)
+                            && is_applicable(c, a, b, pose.rotation)
+                            && self.is_felt_plane(part, piece, pose, placed, &face)
+                        {
+                            best = Some(face);
                         }
                     }
                 }
