@@ -140,3 +140,31 @@ pub fn motion(
     }
     out
 }
+
+/// Poses of a hand sliding over an obstacle at a constant signed distance `gap` (`< 0`: depth), 0.1 % of the size a
+/// sample.
+pub fn sliding(a: &super::Mesh, b: &super::Mesh, gap: f64, count: usize) -> Vec<Pose> {
+    let (pa, pb) = (super::polyhedron(a), super::polyhedron(b));
+    let size = pa.size() + pb.size();
+    let mut rng = super::random(7);
+    let (mut d, mut heading, mut q) = (unit(&mut rng), unit(&mut rng), rotation(&mut rng));
+    let mut out = Vec::with_capacity(count);
+    let mut high = 2.0 * size;
+    let mut tracker = cspace::Tracker::new(pa, pb);
+    for _ in 0..count {
+        heading = (heading + unit(&mut rng) * 0.02).normalize();
+        d = (d + heading * 0.001).normalize();
+        q = (DQuat::from_scaled_axis(unit(&mut rng) * 0.001) * q).normalize();
+        // Newton along the ray meets the plane exactly.
+        for _ in 0..20 {
+            let t = tracker.step(&Pose::new(d * high, q));
+            let slope = t.near.normal_w.dot(d);
+            if slope.abs() < 0.1 || (t.distance - gap).abs() < 1e-9 * size {
+                break;
+            }
+            high -= (t.distance - gap) / slope;
+        }
+        out.push(Pose::new(d * high, q));
+    }
+    out
+}
