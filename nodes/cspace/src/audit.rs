@@ -81,6 +81,23 @@ fn bound(c: &[Corner; 3]) -> f64 {
     pure
 }
 
+/// The angle from Near's normal to the corners of a ring outside of which the ball that the C-obstacle holds about
+/// `c_B - R c_A` keeps every plane farther than Near's by the slack returned; none if the ring would be too wide.
+fn ball_cap(placed: &Placed<'_>, near: &Found, slack: f64) -> Option<(f64, f64)> {
+    let e = -near.face.distance;
+    let to_ball = placed.b.center - placed.r * placed.a.center - placed.x;
+    let (away, rho) = (to_ball.length(), placed.a.inner_radius + placed.b.inner_radius);
+    let spare = slack.min(0.1 * (rho - e));
+    let cos = (rho - e - spare) / away;
+    if !(spare > 0.0 && cos < 1.0) {
+        return None;
+    }
+    let lean = (-near.face.normal_w.dot(to_ball) / away).clamp(-1.0, 1.0).acos();
+    let cap = lean + cos.acos();
+    // The sides of a ring of five cut inside the circle through its corners.
+    (cap < 1.0).then(|| (1.02 * (cap.tan() / (std::f64::consts::PI / RING as f64).cos()).atan(), spare))
+}
+
 struct Audit<'a, 'p> {
     placed: &'a Placed<'p>,
     target: f64,
@@ -135,7 +152,14 @@ fn search(
     // Leave to the C-face's extent what it proves by itself, with a fifth to spare for the motion to come.
     let reach = if target > 0.0 { 0.8 * near.inside / target } else { 3.0 };
     let covered = reach > 0.05;
-    let tan_half_cap = if covered { reach.min(1.5) } else { 0.2 };
+    let beyond = ball_cap(placed, near, 0.02 * size);
+    let tan_half_cap = match beyond {
+        _ if covered => reach.min(1.5),
+        // The fan around the pole reaches to where the balls take over.
+        Some((cap, _)) => (0.5 * cap).tan(),
+        None => 0.2,
+    };
+    let ring_angle = 2.0 * tan_half_cap.atan();
     let (cos, sin) = {
         let t2 = tan_half_cap * tan_half_cap;
         ((1.0 - t2) / (1.0 + t2), 2.0 * tan_half_cap / (1.0 + t2))
@@ -160,26 +184,41 @@ fn search(
             push([pole, ring[i], ring[(i + 1) % RING]], true);
         }
     }
-    let mut last = ring;
-    if cos > -0.2 {
-        // A second ring half way to the antipode.
-        let middle = 0.5 * (cos.acos() + std::f64::consts::PI);
-        let mut outer = [NO_CORNER; RING];
-        for (i, c) in outer.iter_mut().enumerate() {
-            *c = audit.corner((n * middle.cos() + azimuth(i, 0.5) * middle.sin()).normalize(), planes)?;
-        }
+    let strip = |inner: &[Corner; RING], outer: &[Corner; RING], push: &mut dyn FnMut([Corner; 3], bool)| {
         for i in 0..RING {
             let j = (i + 1) % RING;
-            push([ring[i], ring[j], outer[i]], false);
-            push([outer[i], ring[j], outer[j]], false);
+            push([inner[i], inner[j], outer[i]], false);
+            push([outer[i], inner[j], outer[j]], false);
         }
-        last = outer;
-    }
-    let antipode = audit.corner(-n, planes)?;
-    for i in 0..RING {
-        push([last[i], last[(i + 1) % RING], antipode], false);
-    }
+    };
     let mut slack = if covered { f64::INFINITY } else { -1.0 };
+    if let Some((cap, spare)) = beyond {
+        // The inscribed balls answer for everything outside this cap.
+        if cap > ring_angle {
+            let mut outer = [NO_CORNER; RING];
+            for (i, c) in outer.iter_mut().enumerate() {
+                *c = audit.corner((n * cap.cos() + azimuth(i, 0.5) * cap.sin()).normalize(), planes)?;
+            }
+            strip(&ring, &outer, &mut push);
+        }
+        slack = slack.min(spare);
+    } else {
+        let mut last = ring;
+        if cos > -0.2 {
+            // A second ring half way to the antipode.
+            let middle = 0.5 * (ring_angle + std::f64::consts::PI);
+            let mut outer = [NO_CORNER; RING];
+            for (i, c) in outer.iter_mut().enumerate() {
+                *c = audit.corner((n * middle.cos() + azimuth(i, 0.5) * middle.sin()).normalize(), planes)?;
+            }
+            strip(&ring, &outer, &mut push);
+            last = outer;
+        }
+        let antipode = audit.corner(-n, planes)?;
+        for i in 0..RING {
+            push([last[i], last[(i + 1) % RING], antipode], false);
+        }
+    }
     while open > 0 {
         open -= 1;
         let t = stack[open];

@@ -48,6 +48,7 @@ pub(crate) struct PairState {
     rival: Option<BasicContact>,
     certificate: Certificate,
     last: Pose,
+    last_center: DVec3,
     seeded: bool,
 }
 
@@ -57,6 +58,7 @@ impl PairState {
         rival: None,
         certificate: Certificate::NONE,
         last: Pose::IDENTITY,
+        last_center: DVec3::ZERO,
         seeded: false,
     };
 
@@ -79,10 +81,11 @@ impl PairState {
         let mut planes = 0;
         let mut reseeded = false;
         if self.seeded {
-            let travel = placed.r * a.center + placed.x - self.last.transform_point(a.center);
-            let turn = 2.1 * a.radius * (pose.rotation - self.last.rotation).length();
+            let travel2 = (placed.r * a.center + placed.x - self.last_center).length_squared();
+            let chord2 = (pose.rotation - self.last.rotation).length_squared();
             let limit = 0.5 * (a.inner_radius + b.inner_radius);
-            if travel.length_squared() + turn * turn > limit * limit {
+            // The angle turned is at most 2.1 times the chord for the turns that matter here.
+            if travel2 + 4.5 * a.radius * a.radius * chord2 > limit * limit {
                 reseeded = self.follow_jump(a, b, pose, limit, &mut planes);
             }
         }
@@ -106,6 +109,7 @@ impl PairState {
         }
         self.near = near.face.contact;
         self.last = *pose;
+        self.last_center = placed.r * a.center + placed.x;
         let distance = near.face.distance;
         Tracked { near: near.face, depth: (-distance).max(0.0), distance, divergent, reseeded, planes }
     }
@@ -255,7 +259,7 @@ impl Tracker {
         self.step(pose)
     }
 
-    /// Follows A to `pose` (A in W). A pose that is not finite changes nothing and reads as free at distance 0+.
+    /// Follows A to `pose` (A in W). The pose must be finite and its quaternion of unit length.
     #[inline]
     pub fn step(&mut self, pose: &Pose) -> Tracked {
         let (a, b) = &*self.bodies;
