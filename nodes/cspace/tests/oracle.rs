@@ -57,3 +57,22 @@ fn a_box_slides_flat_on_a_plate() {
     }
     println!("worst {worst}");
 }
+
+/// Every pair and motion of the large run, a few poses each.
+#[test]
+fn free_and_depth_agree_with_parry_over_all_pairs_and_motions() {
+    let mut total = judge::Tally::default();
+    for (seed, (name, a, b)) in judge::pairs().into_iter().enumerate() {
+        let (pa, pb) = (polyhedron(&a), polyhedron(&b));
+        let (reach, thin) = (pa.size() + pb.size(), pa.inner_radius() + pb.inner_radius());
+        let free = |p: &Pose| Tracker::new(pa.clone(), pb.clone()).seed(p).is_free();
+        for (k, m) in motions::MOTIONS.iter().enumerate() {
+            let poses = motions::motion(m, 40, reach, thin, &mut random(7000 * seed as u64 + k as u64), &free);
+            let tally = judge::judge(&a, &b, &poses, |i, what| println!("{name} {m} pose {i}: {what}"));
+            total.add(&tally);
+        }
+    }
+    println!("{total:?}");
+    assert_eq!((total.wrong, total.depth_off), (0, 0));
+    assert!(total.contacts > total.poses / 4, "the motions touch");
+}
