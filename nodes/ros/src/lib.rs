@@ -12,6 +12,7 @@ mod host;
 mod inbox;
 pub mod parameters;
 pub mod pictures;
+pub mod player;
 pub mod qos;
 pub mod recorder;
 pub mod servo_node;

@@ -2,6 +2,7 @@
 
 mod batch;
 mod contact_events;
+mod cspace_view;
 mod drivers;
 mod due;
 mod node;
@@ -12,6 +13,7 @@ mod topics;
 
 pub use batch::Batcher;
 pub use contact_events::ContactEvents;
+pub use cspace_view::CSpaceView;
 pub use drivers::open_local;
 pub use due::Due;
 pub use node::ServoNode;

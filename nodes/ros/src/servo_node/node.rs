@@ -1,11 +1,11 @@
 use super::contact_events::ContactEvents;
 use super::drivers;
 use super::setup::{apply, declared, scene_file};
-use super::{Due, Frames, ServoTopics, TopicLink};
+use super::{CSpaceView, Due, Frames, ServoTopics, TopicLink};
 use crate::convert::{ServoReport, scene_description, sha256};
 use crate::parameters::ParameterServer;
 use crate::{Failure, Host, Inbox, Listener, Outcome, Talker, qos};
-use bag::msg::{ContactState, Header, SceneDescription, ServoConfiguration, ServoHealth, WrenchStamped};
+use bag::msg::{ContactState, Header, LocalCSpace, SceneDescription, ServoConfiguration, ServoHealth, WrenchStamped};
 use device::HapticDevice;
 use r2r::diagnostic_msgs::msg::DiagnosticArray;
 use r2r::std_srvs::srv::{SetBool, Trigger};
@@ -19,8 +19,8 @@ use std::time::Duration;
 
 /// A wrench from the robot older than this is let go, s.
 const REMOTE_TIMEOUT: f64 = 0.1;
-/// A contact state shorter than this is not told, s.
-const DEBOUNCE: f64 = 0.005;
+/// How often C-space is told to those who listen, s.
+const CSPACE_PERIOD: f64 = 0.1;
 /// How long a turn waits for requests: well below a batch of ticks.
 const TURN: Duration = Duration::from_millis(2);
 
@@ -35,6 +35,9 @@ pub struct ServoNode {
     topics: ServoTopics,
     events: ContactEvents,
     contacts: Talker<ContactState>,
+    cspace: Talker<LocalCSpace>,
+    cspace_view: CSpaceView,
+    cspace_due: Due,
     configuration: Talker<ServoConfiguration>,
     scene_name: String,
     /// Kept: a late joiner is given its message by the middleware as long as the publisher lives.
@@ -66,6 +69,7 @@ impl ServoNode {
         let node = &mut host.node;
         let topics = ServoTopics::new(node, frames, &scene.world, config.publish_rate, config.realtime.rate)?;
         let contacts = Talker::new(node, "~/contacts", qos::latched(1))?;
+        let cspace = Talker::new(node, "~/cspace", QosProfile::default())?;
         let scene_talker = Talker::new(node, "~/scene", qos::latched(1))?;
         let configuration = Talker::new(node, "~/configuration", qos::latched(1))?;
         let health = Talker::new(node, "~/health", QosProfile::default())?;
@@ -80,7 +84,10 @@ impl ServoNode {
         scene_talker.say(&scene_description(&scene, host.now(), &config.frame_id))?;
         parameters.serve(host.now(), &mut |_| Ok(()))?;
         let node = Self {
-            events: ContactEvents::new(&config.frame_id, DEBOUNCE),
+            events: ContactEvents::new(&config.frame_id, &scene.world),
+            cspace,
+            cspace_view: CSpaceView::new(&scene.world, &config.frame_id),
+            cspace_due: Due::every(CSPACE_PERIOD),
             report_due: Due::every(1.0),
             ongoing_due: Due::every(0.5),
             last: TickRecord::default(),
@@ -196,6 +203,9 @@ impl ServoNode {
                 && let Some(state) = self.events.ongoing(&tick)
             {
                 self.contacts.say(&state)?;
+            }
+            if self.cspace_due.at(tick.input.stamp) && self.cspace.listeners() > 0 && tick.hip.is_valid() {
+                self.cspace.say(&self.cspace_view.at(&tick))?;
             }
             self.since.set(tick.health);
             self.last = tick;
