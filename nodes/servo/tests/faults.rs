@@ -4,7 +4,7 @@
 use device::{DeviceSpec, HapticDevice, Sample};
 use realtime::{ThreadSetup, monotonic_ns};
 use scene::Scene;
-use servo::{Commands, Config, Health, LoopConfig, Tick, TickRecord, spawn};
+use servo::{Commands, Config, Health, LoopConfig, Tick, TickInput, TickRecord, spawn};
 use spatial::{DQuat, DVec3, Pose, Stamp, Wrench};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -218,4 +218,91 @@ fn duplicate_and_out_of_order_samples_are_not_used_and_go_stale() {
     assert_cut(Fault::Duplicate, 11, Health::STALE);
     assert_cut(Fault::OutOfOrder, 11, Health::SEQUENCE);
     assert_cut(Fault::OldStamp, 11, Health::STALE);
+}
+
+/// A tick over the scene, and a hand that presses 1 mm into the plate.
+fn pressing() -> (Tick, Config, Pose) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config/scenes/peg_in_hole/scene.yaml");
+    let mut config = Config::default();
+    config.gains.ramp_time = 0.05;
+    let tick = Tick::new(&Scene::load(&path).unwrap(), &config);
+    (tick, config, Pose::new(DVec3::new(0.019, 0.0, 0.014), DQuat::IDENTITY))
+}
+
+#[test]
+fn a_step_of_the_wall_clock_is_reported_and_the_force_survives_it() {
+    for step_ns in [3_600_000_000_000, -3_600_000_000_000, 100_000_000, -100_000_000] {
+        let (mut tick, config, pose) = pressing();
+        let mut shift_ns = 0;
+        let records: Vec<TickRecord> = (0..600u64)
+            .map(|sequence| {
+                let stepped = sequence == 300;
+                shift_ns += if stepped { step_ns } else { 0 };
+                let stamp = Stamp(1_700_000_000_000_000_000 + sequence as i64 * 1_000_000 + shift_ns);
+                let sample = Sample {
+                    sequence: sequence + 1,
+                    stamp,
+                    pose,
+                    has_twist: true,
+                    connected: true,
+                    ..Sample::default()
+                };
+                tick.step(&TickInput {
+                    sequence,
+                    stamp,
+                    dt: 0.001,
+                    sample,
+                    gains: config.gains,
+                    enabled: true,
+                    outside: if stepped { Health::CLOCK_STEP } else { Health::GOOD },
+                    ..TickInput::default()
+                })
+            })
+            .collect();
+        let force = |n: usize| records[n].out_wrench.force.length();
+        let lost = (300..600).filter(|n| force(*n) < 0.3).count();
+        println!("| clock step {:+} s | {lost} ticks without force | {} |", step_ns as f64 * 1e-9, records[300].health);
+        assert!(records[300].health.any(Health::CLOCK_STEP));
+        assert!(force(299) > 0.3 && force(599) > 0.3, "{} N before, {} N after", force(299), force(599));
+        assert!(lost < 100 && (0..600).all(|n| force(n) < 3.0));
+    }
+}
+
+/// A busy thread at a higher priority on the servo's processor. Needs `SCHED_FIFO`.
+#[test]
+fn a_hog_at_higher_priority_makes_one_late_tick_and_no_burst() {
+    let (mut tick, config, pose) = pressing();
+    let patient = Patient {
+        spec: DeviceSpec::force_feedback("patient"),
+        fault: Fault::Frozen,
+        sequence: 0,
+        felt_for: 0,
+        faulty_for: LASTS, // never faulty
+        last_good: Sample { pose, ..Sample::default() },
+        log: Arc::new(Mutex::new(Log::default())),
+    };
+    let thread = ThreadSetup { priority: 50, cpu: 0, lock_memory: false };
+    let settings = LoopConfig { thread, ..LoopConfig::default() };
+    let on = Commands { enabled: true, gains: config.gains, ..Commands::default() };
+    let mut servo = spawn(Box::new(patient), move |input| tick.step(input), on, &settings).unwrap();
+    if !servo.handle.grants().all_granted() {
+        return eprintln!("SKIPPED: no real-time priority here: {}", servo.handle.grants());
+    }
+    std::thread::sleep(Duration::from_millis(200));
+    let hog = std::thread::spawn(|| {
+        let _ = ThreadSetup { priority: 60, cpu: 0, lock_memory: false }.apply();
+        let until_ns = monotonic_ns() + 20_000_000;
+        while monotonic_ns() < until_ns {}
+    });
+    hog.join().unwrap();
+    std::thread::sleep(Duration::from_millis(200));
+    let status = servo.handle.join().unwrap();
+    let records: Vec<TickRecord> = std::iter::from_fn(|| servo.records.pop()).collect();
+    let latest = records.iter().max_by(|a, b| a.input.dt.total_cmp(&b.input.dt)).unwrap();
+    println!("| CPU hog 20 ms | latest tick stands for {:.0} ms | {} |", latest.input.dt * 1e3, latest.health);
+    assert!(latest.input.dt > 0.015 && latest.health.any(Health::LATE), "dt {}", latest.input.dt);
+    assert!(status.skipped >= 15);
+    // No burst: never two ticks for the same moment, and the force is there again.
+    assert!(records.windows(2).all(|w| w[1].input.stamp > w[0].input.stamp));
+    assert!(records.last().unwrap().out_wrench.force.length() > 0.3);
 }
