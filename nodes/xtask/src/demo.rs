@@ -5,6 +5,7 @@ pub mod domain;
 mod output;
 mod processes;
 mod summary;
+mod viewer;
 
 use crate::cargo_build::{self, Executables};
 use crate::env;
@@ -67,6 +68,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM, signal_hook::consts::SIGHUP] {
         signal_hook::flag::register(signal, Arc::clone(&stop)).context("signals cannot be caught")?;
     }
+    let viewer = if arguments.viewer { Some(viewer::Viewer::open()?) } else { None };
     let output = Output::create(&workspace::root().join("out"), &arguments.scene)?;
     let processes = Processes {
         arguments,
@@ -75,9 +77,16 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         scene: &scene,
         domain: domain.id,
         output: &output,
+        viewer: viewer.as_ref().map(|viewer| viewer.address),
     };
     let report = processes.run(&stop)?;
-    summary::write(&executables, &variables, &output, arguments, &report)
+    let code = summary::write(&executables, &variables, &output, arguments, &report)?;
+    if let Some(viewer) = viewer
+        && !report.interrupted
+    {
+        viewer.wait(&stop);
+    }
+    Ok(code)
 }
 
 /// The scene must be whole before anything is started.

@@ -3,6 +3,7 @@
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
+mod bench;
 mod cargo_build;
 mod ci;
 mod demo;
@@ -25,6 +26,8 @@ enum Command {
     Demo(demo::Arguments),
     /// Run everything that CI runs
     Test(ci::Arguments),
+    /// Run the benchmarks
+    Bench(bench::Arguments),
     /// Become another program that ends when this process's parent does
     #[command(hide = true)]
     AsChild {
@@ -39,6 +42,7 @@ fn main() -> ExitCode {
         Command::Env => env::print(),
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Test(arguments) => ci::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::AsChild { parent, program } => demo::child::become_child(parent, &program).map(|()| ExitCode::SUCCESS),
     };
     match outcome {

@@ -8,6 +8,7 @@ use crate::progress::Step;
 use anyhow::{Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::net::SocketAddrV4;
 use std::path::Path;
 use std::process::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -28,6 +29,7 @@ pub struct Processes<'a> {
     pub scene: &'a Path,
     pub domain: u16,
     pub output: &'a Output,
+    pub viewer: Option<SocketAddrV4>,
 }
 
 /// What the servo and the recorder said about the run at its end.
@@ -188,8 +190,9 @@ impl Processes<'_> {
         let mut command = self.node("haptic_inspect")?;
         set(&mut command, "scene", &self.scene.display());
         set(&mut command, "output", &self.output.recording().display());
-        if self.arguments.viewer {
+        if let Some(address) = self.viewer {
             set(&mut command, "viewer", &true);
+            set(&mut command, "address", &address);
         }
         Ok(command)
     }

@@ -41,7 +41,8 @@ pub fn write(
         text.push_str(&format!("\nticks run       {ticks}"));
     }
     text.push_str(&format!("\nrecording       demo.rrd, {:.1} MB\n", size as f64 / 1e6));
-    for line in &report.lines {
+    // What each process ended with; what it began with is of no interest any more.
+    for line in report.lines.iter().filter(|line| !line.contains(": recording ")) {
         text.push_str(line);
         text.push('\n');
     }
