@@ -20,7 +20,7 @@ pub struct Arguments {
 /// # Errors
 /// The environment cannot be brought: nothing can be tested then.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let mut steps = Steps { only: arguments.only.as_deref(), passed: 0, failed: Vec::new() };
+    let mut steps = Steps { only: arguments.only.as_deref(), passed: 0, skipped: Vec::new(), failed: Vec::new() };
     steps.run("rustfmt", cargo().args(["fmt", "--all", "--check"]));
 
     // From here on ROS is sourced throughout and every step takes the whole workspace: with other selections the
@@ -34,6 +34,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     steps.run("clippy", &mut with_ros(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]));
     steps.run("rustdoc", with_ros(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"));
     steps.run("tests of the workspace", &mut with_ros(&["test", "--workspace", "--no-fail-fast"]));
+    steps.run("SpaceMouse on a virtual device", Command::new("sh").arg(workspace::root().join("tests/uhid/run.sh")));
     steps.run_with("system tests on ROS 2", || system_tests(&variables));
     Ok(steps.conclude())
 }
@@ -63,9 +64,13 @@ fn system_tests(variables: &Variables) -> Result<Command> {
     Ok(command)
 }
 
+/// The exit code by which a script says that it could not run here.
+const SKIPPED: i32 = 77;
+
 struct Steps<'a> {
     only: Option<&'a str>,
     passed: usize,
+    skipped: Vec<String>,
     failed: Vec<String>,
 }
 
@@ -82,6 +87,10 @@ impl Steps<'_> {
             Ok(status) if status.success() => {
                 eprintln!("=== {name}: passed ({seconds:.0} s)");
                 self.passed += 1;
+            }
+            Ok(status) if status.code() == Some(SKIPPED) => {
+                eprintln!("=== {name}: SKIPPED, for the reason above");
+                self.skipped.push(name.to_owned());
             }
             Ok(status) => self.fail(name, &status.to_string()),
             Err(error) => self.fail(name, &format!("{} cannot be started: {error}", command.get_program().display())),
@@ -112,7 +121,10 @@ impl Steps<'_> {
         for name in &self.failed {
             println!("failed: {name}");
         }
-        println!("{} passed, {} failed", self.passed, self.failed.len());
+        for name in &self.skipped {
+            println!("skipped: {name}");
+        }
+        println!("{} passed, {} skipped, {} failed", self.passed, self.skipped.len(), self.failed.len());
         if self.failed.is_empty() && self.passed > 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
     }
 }
