@@ -47,7 +47,9 @@ pub struct Gains {
     pub friction_kinetic: f64,
     /// Whether the passivity controller acts (the observer always runs).
     pub passivity: bool,
-    /// Edge rounding of the proxy's fall off a sharp edge: greatest proxy speed, m/s; infinite is off.
+    /// Edge rounding (law `proxy`): greatest speed at which the proxy catches up with the hand, m/s, on top of the hand's own;
+    /// infinite is off. Falling off a sharp edge changes the force by at most `stiffness (2 d + proxy_speed T)` in a tick
+    /// of T in which no point of the part in the hand moved farther than d.
     pub proxy_speed: f64,
 }
 

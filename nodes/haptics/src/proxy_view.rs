@@ -19,6 +19,8 @@ const BESIDE: f64 = 1e-6;
 /// Bounds of the reach, metres.
 const SHORTEST: f64 = 2e-4;
 const LONGEST: f64 = 3e-3;
+/// A motion of the hand in one tick beyond this, or half the lever, is a jump and no motion, metres.
+const JUMP: f64 = 0.05;
 
 /// A pair in reach and its contacts in the list.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +72,7 @@ impl View {
             pairs: Vec::with_capacity(pairs),
             penetration: 0.0,
             reach,
-            jump: 16.0 * reach,
+            jump: JUMP.max(0.5 * lever),
             lever,
             clipper: Clipper::for_world(world),
             touching: vec![false; pairs],

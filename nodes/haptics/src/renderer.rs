@@ -24,6 +24,8 @@ pub struct Renderer {
     depth_law: DepthLaw,
     proxy: Proxy,
     law: Option<LawKind>,
+    /// The last valid pose of the hand.
+    hip: Pose,
     /// The wrench last given and what is left of the difference between two laws.
     last: Wrench,
     step: Wrench,
@@ -49,6 +51,7 @@ impl Renderer {
             proxy: Proxy::new(&solids, Friction::new(own)),
             solids,
             law: None,
+            hip: Pose::IDENTITY,
             last: Wrench::ZERO,
             step: Wrench::ZERO,
             fade: 0.0,
@@ -64,6 +67,11 @@ impl Renderer {
 
 impl RenderLaw for Renderer {
     fn render(&mut self, hip: &Pose, gains: &Gains, dt: f64) -> LawOutput {
+        // A pose that is none (not a number, no unit quaternion) leaves the hand where it was.
+        if hip.is_valid() {
+            self.hip = *hip;
+        }
+        let hip = &{ self.hip };
         self.sense.step(hip);
         let changed = self.law.is_some_and(|l| l != gains.law);
         let first = self.law.replace(gains.law).is_none();

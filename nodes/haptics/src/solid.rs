@@ -101,19 +101,25 @@ impl Solids {
     pub fn felt_plane(&self, part: usize, piece: usize, pose: &Pose, placed: &Placed, near: &CFace) -> Option<CFace> {
         let (a, b) = (self.part(part), self.piece(piece));
         let mut best: Option<CFace> = None;
-        let mut offer = |c: BasicContact| {
-            let face = CFace::at(c, a, b, pose);
-            if best.is_none_or(|o| face.distance > o.distance) && self.is_felt_plane(part, piece, pose, placed, &face) {
+        let mut offer = |contact: BasicContact, normal_w: DVec3, distance: f64| {
+            let face = CFace { contact, normal_w, distance };
+            if best.is_none_or(|o| distance > o.distance) && self.is_felt_plane(part, piece, pose, placed, &face) {
                 best = Some(face);
             }
         };
-        for face_b in b.faces() {
-            let vertex_a = a.support(-(placed.r.transpose() * b.face_plane(face_b).normal));
-            offer(BasicContact::TypeB { vertex_a, face_b });
+        let into_a = placed.r.transpose();
+        for face_b in b.faces().filter(|f| !self.is_internal_b(piece, *f)) {
+            let plane = b.face_plane(face_b);
+            let vertex_a = a.support(-(into_a * plane.normal));
+            let distance = plane.signed_distance(placed.point(a.vertex(vertex_a)));
+            offer(BasicContact::TypeB { vertex_a, face_b }, plane.normal, distance);
         }
-        for face_a in a.faces() {
-            let vertex_b = b.support(-(placed.r * a.face_plane(face_a).normal));
-            offer(BasicContact::TypeA { face_a, vertex_b });
+        for face_a in a.faces().filter(|f| !self.is_internal_a(part, *f)) {
+            let plane = a.face_plane(face_a);
+            let normal_w = -(placed.r * plane.normal);
+            let vertex_b = b.support(normal_w);
+            let distance = normal_w.dot(placed.x - b.vertex(vertex_b)) - plane.distance;
+            offer(BasicContact::TypeA { face_a, vertex_b }, normal_w, distance);
         }
         // No plane is nearer than Near's: a tie cannot be bettered.
         if best.is_some_and(|f| f.distance >= near.distance - 1e-12) {
