@@ -1,95 +1,99 @@
-//! The simulated operator in the real scenes, with the real tick: what it is there for happens, whatever its seed.
+//! The simulated operator inserts the pegs, and the loop gives the hand no energy.
 
 use device::{HapticDevice, OperatorConfig, SimulatedOperator};
 use haptics::{FormationKind, LawKind};
 use scene::Scene;
-use servo::{Config, Tick, TickInput, TickRecord, operator_plan};
+use servo::{Config, Health, Tick, TickInput, operator_plan};
 use spatial::{DVec3, Pose, Stamp, Wrench};
 use std::path::Path;
 
-fn load(name: &str) -> Scene {
-    Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../config/scenes/{name}/scene.yaml"))).unwrap()
+/// What came of a run.
+#[derive(Debug)]
+struct Run {
+    /// Lowest height of the peg's tip, metres.
+    lowest: f64,
+    /// Greatest net energy given to the hand up to any moment, J.
+    given: f64,
+    health: Health,
+    formations: Vec<FormationKind>,
+    /// How far the proxy's corners reached into the plate, metres.
+    penetration: f64,
 }
 
-/// Ten seconds of ticks.
-fn run(scene: &Scene, seed: u64, law: LawKind) -> Vec<TickRecord> {
+fn run(name: &str, seed: u64, law: LawKind, seconds: f64) -> Run {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config/scenes").join(name).join("scene.yaml");
+    let scene = Scene::load(&path).unwrap();
     let mut config = Config::default();
     config.gains.law = law;
-    let mut tick = Tick::new(scene, &config);
-    let operator = OperatorConfig { seed, ..OperatorConfig::default() };
+    let operator = OperatorConfig { seed, ..config.device.operator };
     let mut hand = SimulatedOperator::new(operator, operator_plan(&scene.world).unwrap()).unwrap();
-    (0..10_000u64)
-        .map(|sequence| {
-            let stamp = Stamp(1_000_000_000 + sequence as i64 * 1_000_000);
-            let sample = hand.read(stamp);
-            let gains = config.gains;
-            let record = tick.step(&TickInput {
-                sequence,
-                stamp,
-                dt: 0.001,
-                sample,
-                gains,
-                enabled: true,
-                ..TickInput::default()
-            });
-            hand.write(&record.out_wrench);
-            record
-        })
-        .collect()
-}
-
-fn share(records: &[TickRecord], kinds: &[FormationKind]) -> f64 {
-    records.iter().filter(|r| kinds.contains(&r.formation.kind)).count() as f64 / records.len() as f64
-}
-
-/// How low the peg's lower end came, and how high in the last three seconds, metres; by the pose that `of` picks.
-fn tip(records: &[TickRecord], of: impl Fn(&TickRecord) -> Pose) -> (f64, f64) {
-    let height = |r: &TickRecord| of(r).transform_point(DVec3::NEG_Z * 0.015).z;
-    (
-        records.iter().map(height).fold(f64::INFINITY, f64::min),
-        records[7000..].iter().map(height).fold(f64::NEG_INFINITY, f64::max),
-    )
-}
-
-#[test]
-fn the_peg_is_seated_and_pulled_out_whatever_the_seed() {
-    use FormationKind::{EdgeEdge, EdgeFace, FaceFace, Free, VertexFace};
-    let scene = load("peg_in_hole");
-    for seed in 1..=10 {
-        let records = run(&scene, seed, LawKind::Proxy);
-        let (lowest, after) = tip(&records, |r| r.proxy);
-        let free = share(&records, &[Free]);
-        let one = share(&records, &[VertexFace, EdgeEdge]);
-        let more = share(&records, &[EdgeFace, FaceFace]);
-        let strongest = records.iter().map(|r| r.out_wrench.force.length()).fold(0.0, f64::max);
-        println!("seed {seed}: {:.2} mm, free {free:.2}, one {one:.2}, more {more:.2}, {strongest:.1} N", lowest * 1e3);
-        assert!((-0.0091..-0.0088).contains(&lowest), "seed {seed}: the tip reached {lowest} m");
-        assert!(after > 0.02, "seed {seed}: the peg was not pulled out, {after} m");
-        assert!(free > 0.1 && one > 0.02 && more > 0.1, "seed {seed}: {free} {one} {more}");
-        assert!(strongest > 0.5 && strongest < 6.0, "seed {seed}: {strongest} N");
-    }
-}
-
-#[test]
-fn every_law_lets_the_peg_in_and_out() {
-    let scene = load("peg_in_hole");
-    for law in [LawKind::Paper, LawKind::Pstar, LawKind::Blended] {
-        for seed in 1..=3 {
-            let records = run(&scene, seed, law);
-            let (lowest, _) = tip(&records, |r| r.proxy);
-            let (_, after) = tip(&records, |r| r.hip);
-            assert!(lowest < -0.008, "{law:?}, seed {seed}: the tip reached {lowest} m");
-            assert!(after > 0.02, "{law:?}, seed {seed}: the peg was not pulled out, {after} m");
+    let mut tick = Tick::new(&scene, &config);
+    let mut run = Run { lowest: 1.0, given: 0.0, health: Health::GOOD, formations: Vec::new(), penetration: 0.0 };
+    let (mut work, mut last, mut shown) = (0.0, None::<Pose>, Wrench::ZERO);
+    for i in 0..(seconds * 1000.0) as u64 {
+        let stamp = Stamp(1_000_000 * (i as i64 + 1));
+        let sample = hand.read(stamp);
+        let input = TickInput {
+            sequence: i,
+            stamp,
+            dt: 1e-3,
+            sample,
+            gains: config.gains,
+            enabled: true,
+            ..Default::default()
+        };
+        let r = tick.step(&input);
+        let pose = sample.pose;
+        let before = last.replace(pose).unwrap_or(pose);
+        work += shown.force.dot(pose.translation - before.translation) + shown.torque.dot(before.rotation_to(&pose));
+        run.given = run.given.max(work);
+        hand.write(&r.out_wrench);
+        shown = r.out_wrench;
+        run.health.set(r.health);
+        run.lowest = run.lowest.min(r.proxy.transform_point(DVec3::NEG_Z * 0.015).z);
+        if !run.formations.contains(&r.formation.kind) {
+            run.formations.push(r.formation.kind);
+        }
+        for part in &scene.world.moving {
+            for v in part.vertices() {
+                let p = r.proxy.transform_point(*v);
+                for piece in &scene.world.fixed {
+                    let b = &piece.polyhedron;
+                    let outside = b.faces().map(|f| b.face_plane(f).signed_distance(p)).fold(f64::MIN, f64::max);
+                    run.penetration = run.penetration.max(-outside);
+                }
+            }
         }
     }
+    run
+}
+
+/// 100 hands with tremor, each holding the peg 2 degrees askew and aiming beside the mark.
+fn insert_all(name: &str) {
+    let mut worst = Run { lowest: -1.0, given: 0.0, health: Health::GOOD, formations: Vec::new(), penetration: 0.0 };
+    for seed in 0..100 {
+        let r = run(name, seed, LawKind::Proxy, 9.5);
+        assert!((r.lowest + 0.009).abs() < 1e-6, "seed {seed}: not at the bottom: {r:?}");
+        assert!(r.given <= 1e-6, "seed {seed}: energy into the hand: {r:?}");
+        assert!(r.penetration <= 1e-7, "seed {seed}: the proxy penetrates: {r:?}");
+        let trouble = Health::ZERO_FORCE | Health::JUMP | Health::ENERGY;
+        assert!(!r.health.any(trouble), "seed {seed}: {}", r.health);
+        for kind in [FormationKind::Free, FormationKind::VertexFace, FormationKind::EdgeFace, FormationKind::FaceFace] {
+            assert!(r.formations.contains(&kind), "seed {seed}: never {}: {r:?}", kind.name());
+        }
+        worst.lowest = worst.lowest.max(r.lowest);
+        worst.given = worst.given.max(r.given);
+        worst.penetration = worst.penetration.max(r.penetration);
+    }
+    println!("{name}: worst of 100: {worst:?}");
 }
 
 #[test]
-fn other_scenes_are_touched_and_left() {
-    for name in ["tetra_on_box", "peg_4x4"] {
-        let records = run(&load(name), 1, LawKind::Proxy);
-        let contact = 1.0 - share(&records, &[FormationKind::Free]);
-        assert!((0.1..0.9).contains(&contact), "{name}: in contact {contact} of the time");
-        assert!(records.iter().any(|r| r.out_wrench != Wrench::ZERO));
-    }
+fn the_rectangular_peg_goes_to_the_bottom_and_takes_no_energy() {
+    insert_all("peg_in_hole");
+}
+
+#[test]
+fn the_square_peg_goes_to_the_bottom_and_takes_no_energy() {
+    insert_all("peg_4x4");
 }
