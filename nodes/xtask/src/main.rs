@@ -1,4 +1,4 @@
-//! Everyday commands of the workspace: `cargo xtask env | demo | test | bench | pictures`.
+//! Everyday commands of the workspace: `cargo xtask env | demo | test | bench`.
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
