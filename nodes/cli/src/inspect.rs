@@ -41,10 +41,12 @@ fn bag(dir: &Path, sink: &Sink) -> Result<(), Failure> {
             Some(recorder) => recorder,
             None => {
                 let description = ticks.scene.as_ref();
-                let description = description.ok_or_else(|| Failure::file(dir, "the bag holds no scene before its ticks"))?;
+                let description =
+                    description.ok_or_else(|| Failure::file(dir, "the bag holds no scene before its ticks"))?;
                 let files = description.files.iter().map(|f| (f.path.clone(), f.data.clone())).collect();
                 let path = dir.join(format!("{}.yaml", description.name));
-                let scene = Scene::build(Bundle { path, yaml: description.yaml.clone(), files }).map_err(Failure::plain)?;
+                let scene =
+                    Scene::build(Bundle { path, yaml: description.yaml.clone(), files }).map_err(Failure::plain)?;
                 let gains = &tick.input.gains;
                 let options = Options { full_scale: (gains.max_force, gains.max_torque), ..Options::default() };
                 recorder.insert(Recorder::new(Subject::of(&scene), sink, &options).map_err(Failure::plain)?)

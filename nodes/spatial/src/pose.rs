@@ -124,7 +124,8 @@ mod tests {
     #[test]
     fn rpy_is_fixed_axis() {
         // URDF: roll about x first, then pitch about the fixed y, then yaw about the fixed z.
-        let p = Pose::from_xyz_rpy(DVec3::ZERO, DVec3::new(std::f64::consts::FRAC_PI_2, 0.0, std::f64::consts::FRAC_PI_2));
+        let p =
+            Pose::from_xyz_rpy(DVec3::ZERO, DVec3::new(std::f64::consts::FRAC_PI_2, 0.0, std::f64::consts::FRAC_PI_2));
         assert!((p.transform_vector(DVec3::Y) - DVec3::Z).length() < 1e-12);
         assert!((p.transform_vector(DVec3::X) - DVec3::Y).length() < 1e-12);
     }
