@@ -333,9 +333,9 @@ fn vertex_rings(
         }
     }
     let mut out = Rings { faces: Rows::new(), edges: Rows::new(), vertices: Rows::new() };
-    for v in 0..count {
+    for start in start {
         let (mut f, mut e, mut n) = (Vec::new(), Vec::new(), Vec::new());
-        if let Some((v, first)) = start[v] {
+        if let Some((v, first)) = start {
             let mut to = first;
             loop {
                 let face = side[&(v, to)];

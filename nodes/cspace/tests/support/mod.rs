@@ -28,7 +28,7 @@ pub fn unit(rng: &mut Random) -> DVec3 {
 }
 
 pub fn rotation(rng: &mut Random) -> DQuat {
-    DQuat::from_axis_angle(unit(rng), rng.random_range(-3.14..3.14)).normalize()
+    DQuat::from_axis_angle(unit(rng), rng.random_range(-3.0..3.0)).normalize()
 }
 
 /// Vertices and polygon faces.
