@@ -79,6 +79,9 @@ impl ServoNode {
         let remote = Listener::new(node, "~/remote_wrench", qos::sensor())?;
         let trust_stamps = parameters.switch("device.trust_stamps");
         let (device, link) = drivers::open(node, &config, &scene, trust_stamps)?;
+        let findings = servo::check_stability(&config, &scene)
+            .map_err(|f| Failure::new(format!("stability.check refuses to start: {f}")))?;
+        findings.iter().for_each(|f| host.say(&format!("warning: {f}")));
         let commands = Commands { enabled: parameters.switch("enabled"), gains: config.gains, ..Commands::default() };
         let servo = spawn_loop(device, &scene, &config, commands)?;
         scene_talker.say(&scene_description(&scene, host.now(), &config.frame_id))?;
