@@ -189,7 +189,7 @@ impl DepthLaw {
             t.tie *= if was_multiple { 1.5 } else { 1.0 };
             let limit = t.plane.distance + if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
             t.first = self.points.len();
-            self.clipper.region(solids, part, piece, placed, &t.plane, f64::INFINITY, &mut self.points);
+            self.clipper.region(solids, part, piece, placed, &t.plane, true, f64::INFINITY, &mut self.points);
             // How deep each contact is under Near's plane: along Near's normal none can be deeper than Near.
             let normal = t.plane.normal_w;
             let mut kept = t.first;

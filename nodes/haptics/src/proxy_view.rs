@@ -3,7 +3,7 @@
 use crate::formation::{ContactFormation, ContactPoint, FormationKind};
 use crate::paper_torque::convex_hull;
 use crate::proxy::Step;
-use crate::region::{Clipper, Placed, RegionPoint};
+use crate::region::{Clipper, Placed, RegionPoint, most_parallel};
 use crate::sense::{Sense, Sensed};
 use crate::solid::Solids;
 use cspace::{BasicContact, CFace};
@@ -47,6 +47,8 @@ pub(crate) struct View {
     pub lever: f64,
     clipper: Clipper,
     touching: Vec<bool>,
+    /// Pairs listed by their faces alone at this look.
+    by_face: Vec<bool>,
     places: Vec<DVec3>,
     hull: Vec<DVec3>,
     pieces: usize,
@@ -76,6 +78,7 @@ impl View {
             lever,
             clipper: Clipper::for_world(world),
             touching: vec![false; pairs],
+            by_face: Vec::with_capacity(pairs),
             places: Vec::with_capacity(Self::ROOM),
             hull: Vec::with_capacity(Self::ROOM),
             pieces: world.fixed.len(),
@@ -100,6 +103,8 @@ impl View {
         }
         let mut felt_penetration = f64::NEG_INFINITY;
         let mut unfelt = false;
+        self.by_face.clear();
+        self.by_face.resize(self.sense.pairs.len(), false);
         for k in 0..self.sense.pairs.len() {
             let s = self.sense.pairs[k];
             if s.near.distance > self.reach {
@@ -107,7 +112,11 @@ impl View {
             }
             if solids.is_felt(s.part as usize, s.piece as usize, pose, &placed, &s.near) {
                 felt_penetration = felt_penetration.max(-s.near.distance);
-                self.list(solids, &s, &s.near, &placed);
+                self.list(solids, &s, &s.near, true, &placed);
+            } else if s.near.distance > -PENETRATION && self.leans_on_open_face(solids, &s, &placed) {
+                // Only the place is a seam's: the faces there, and so the region, are the solid's own.
+                self.list(solids, &s, &s.near, false, &placed);
+                self.by_face[k] = true;
             } else {
                 unfelt = true;
             }
@@ -118,21 +127,28 @@ impl View {
         for k in 0..self.sense.pairs.len() {
             let s = self.sense.pairs[k];
             let (part, piece) = (s.part as usize, s.piece as usize);
-            if s.near.distance > self.reach || solids.is_felt(part, piece, pose, &placed, &s.near) {
+            if s.near.distance > self.reach || self.by_face[k] || solids.is_felt(part, piece, pose, &placed, &s.near) {
                 continue;
             }
             let Some(plane) = solids.felt_plane(part, piece, pose, &placed, &s.near) else { continue };
             // A plane far inside belongs to the other side of the solid: the pieces around push out first.
             if plane.distance >= -BESIDE || felt_penetration <= PENETRATION && s.near.distance < -PENETRATION {
-                self.list(solids, &s, &plane, &placed);
+                self.list(solids, &s, &plane, true, &placed);
             }
         }
     }
 
-    fn list(&mut self, solids: &Solids, s: &Sensed, plane: &CFace, placed: &Placed) {
+    /// Whether a face of the solid at Near's features stands across Near's normal.
+    fn leans_on_open_face(&self, solids: &Solids, s: &Sensed, placed: &Placed) -> bool {
+        let (part, piece) = (s.part as usize, s.piece as usize);
+        most_parallel(solids, part, piece, &placed.r, &s.near)
+            .is_some_and(|(_, face_b)| solids.piece(piece).face_plane(face_b).normal.dot(s.near.normal_w) > 0.9)
+    }
+
+    fn list(&mut self, solids: &Solids, s: &Sensed, plane: &CFace, felt: bool, placed: &Placed) {
         let first = self.points.len();
         let (part, piece) = (s.part as usize, s.piece as usize);
-        self.clipper.region(solids, part, piece, placed, plane, self.reach, &mut self.points);
+        self.clipper.region(solids, part, piece, placed, plane, felt, self.reach, &mut self.points);
         self.pairs.push(InReach { part: s.part, piece: s.piece, first, end: self.points.len() });
     }
 

@@ -73,7 +73,7 @@ impl Clipper {
     }
 
     /// Appends to `out` the contacts of the region between the most nearly parallel faces at `near`, those with a gap of
-    /// up to `reach` metres, as long as `out` has room. Faces inside the assembly of their own body are never chosen,
+    /// up to `reach` metres (Near's own among them only if `near_felt`), as long as `out` has room. Faces inside the assembly of their own body are never chosen,
     /// and where B's face goes on in another piece there is no border to touch.
     #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
     pub fn region(
@@ -83,6 +83,7 @@ impl Clipper {
         piece: usize,
         placed: &Placed,
         near: &CFace,
+        near_felt: bool,
         reach: f64,
         out: &mut Vec<RegionPoint>,
     ) {
@@ -90,7 +91,7 @@ impl Clipper {
         let same = SAME_POINT * (a.size() + b.size());
         let first = out.len();
         // Near's own contact first, at its exact place, when its features face each other.
-        let own = facing_point(a, b, placed, near, 1e3 * same);
+        let own = if near_felt { facing_point(a, b, placed, near, 1e3 * same) } else { None };
         if let Some(point_w) = own.filter(|_| near.distance <= reach) {
             let (gap, normal_w) = (near.distance, near.normal_w);
             let span_w = normal_w * gap;
@@ -212,7 +213,13 @@ fn push(p: RegionPoint, reach: f64, same: f64, first: usize, out: &mut Vec<Regio
 }
 
 /// The pair of faces, one of each body, at the features of `near` that are most nearly antiparallel.
-fn most_parallel(solids: &Solids, part: usize, piece: usize, r: &DMat3, near: &CFace) -> Option<(FaceId, FaceId)> {
+pub(crate) fn most_parallel(
+    solids: &Solids,
+    part: usize,
+    piece: usize,
+    r: &DMat3,
+    near: &CFace,
+) -> Option<(FaceId, FaceId)> {
     let (a, b) = (solids.part(part), solids.piece(piece));
     let (one_a, one_b);
     let (edge_a_faces, edge_b_faces);
