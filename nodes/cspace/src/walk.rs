@@ -113,7 +113,8 @@ impl<'a> Placed<'a> {
                         if moves < limit {
                             continue;
                         }
-                        (DVec3::Z, f64::NEG_INFINITY, f64::NEG_INFINITY)
+                        // Out of moves: what repair gave is applicable and its plane is true.
+                        return Found { face: self.plane(node), inside: f64::NEG_INFINITY, settled: false };
                     }
                 },
             };
