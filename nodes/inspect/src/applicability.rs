@@ -8,8 +8,9 @@ use rerun::{GraphEdges, GraphNodes, RecordingStream, RecordingStreamResult, Rgba
 /// The applicability subgraph of the pair nearest to `x` (paper, Figure 3).
 pub(crate) const APPLICABILITY: &str = "/graph/applicability";
 
-/// Radii of the map, in the view's units. Labels are wider than high, and the view folds them when it is zoomed out.
-const RADIUS: [f32; 2] = [150.0, 85.0];
+/// Radii of the innermost ring, in the view's units. Labels are wider than high, and the view folds them when it is
+/// zoomed out.
+const RING: [f32; 2] = [115.0, 46.0];
 
 /// Draws the applicability subgraph. Remembers what is drawn.
 #[derive(Default)]
@@ -36,14 +37,15 @@ impl ApplicabilityGraph {
         if self.drawn.as_ref() == Some(&shown) {
             return Ok(());
         }
-        let places = map(&pair.faces, pair.faces[pair.near].normal_w);
+        let places = map(&pair.faces, pair.near);
+        let top = places.iter().map(|p| p[1]).fold(0.0, f32::min);
         let mut ids: Vec<String> = (0..pair.faces.len()).map(|i| format!("n{i}")).collect();
         let mut labels: Vec<&str> = shown.iter().map(|(text, _)| text.as_str()).collect();
         let mut colors: Vec<Rgba32> = pair.roles.iter().map(|role| palette::solid(color(*role))).collect();
         let mut positions = places;
         ids.push("title".into());
         colors.push(palette::solid(palette::PLAIN));
-        positions.push([0.0, -RADIUS[1] * 2.3]);
+        positions.push([0.0, top - 30.0]);
         labels.truncate(ids.len());
         let nodes = GraphNodes::new(ids.iter().map(String::as_str))
             .with_positions(positions)
@@ -75,7 +77,11 @@ fn color(role: Role) -> palette::Rgb {
 
 /// Type and features, A's first: `B v3-f1`.
 fn label(face: &CFacePolygon) -> String {
-    let [contact] = face.contacts[..] else { return format!("{} contacts", face.contacts.len()) };
+    let [contact] = face.contacts[..] else {
+        let has = |letter: char| face.contacts.iter().any(|c| c.type_letter() == letter);
+        let kind = if has('A') && has('B') { "face-face" } else { "edge-face" };
+        return format!("{kind} ({})", face.contacts.len());
+    };
     let (a, b) = contact.features();
     match contact.type_letter() {
         'A' => format!("A f{a}-v{b}"),
@@ -84,18 +90,46 @@ fn label(face: &CFacePolygon) -> String {
     }
 }
 
-/// Places the faces by their normals: the Gauss sphere around Near, unrolled by Lambert's equal-area projection. The
-/// graph of a convex polyhedron drawn so has Near in the middle, its neighbours around it, and no crossings but at the rim.
-fn map(faces: &[CFacePolygon], middle: DVec3) -> Vec<[f32; 2]> {
+/// Places the faces on rings around Near, one ring for each step on the graph, in the order of their normals' bearing:
+/// no two labels fall together, however thin the C-faces between them.
+fn map(faces: &[CFacePolygon], near: usize) -> Vec<[f32; 2]> {
+    let middle = faces[near].normal_w;
     let up = if middle.z.abs() < 0.9 { DVec3::Z } else { DVec3::Y };
     let right = up.cross(middle).normalize();
     let up = middle.cross(right);
-    let place = |n: DVec3| {
-        let stretch = (2.0 / (1.0 + middle.dot(n)).max(1e-3)).sqrt();
-        let at = DVec3::new(n.dot(right), -n.dot(up), 0.0) * stretch;
-        // The far pole is a circle: keep it on the map.
-        let at = if at.length() < 1e-6 && middle.dot(n) < 0.0 { DVec3::Y * 2.0 } else { at };
-        [at.x as f32 * RADIUS[0], at.y as f32 * RADIUS[1]]
-    };
-    faces.iter().map(|f| place(f.normal_w)).collect()
+    let bearing = |i: usize| faces[i].normal_w.dot(up).atan2(faces[i].normal_w.dot(right));
+    let mut places = vec![[0.0; 2]; faces.len()];
+    for (step, mut ring) in rings(faces, near).into_iter().enumerate().skip(1) {
+        ring.sort_by(|&i, &j| bearing(i).total_cmp(&bearing(j)));
+        let turn = std::f64::consts::TAU / ring.len() as f64;
+        // The ring as a whole is turned to where its members really are.
+        let (sin, cos) = ring
+            .iter()
+            .enumerate()
+            .map(|(k, &i)| (bearing(i) - turn * k as f64).sin_cos())
+            .fold((0.0, 0.0), |sum, (sin, cos)| (sum.0 + sin, sum.1 + cos));
+        let start = sin.atan2(cos);
+        for (k, i) in ring.into_iter().enumerate() {
+            let (sin, cos) = (start + turn * k as f64).sin_cos();
+            let radius = RING.map(|r| r * step as f32);
+            places[i] = [radius[0] * cos as f32, -radius[1] * sin as f32];
+        }
+    }
+    places
+}
+
+/// The faces by their number of steps from Near.
+fn rings(faces: &[CFacePolygon], near: usize) -> Vec<Vec<usize>> {
+    let mut rings = vec![vec![near]];
+    let mut left: Vec<usize> = (0..faces.len()).filter(|&i| i != near).collect();
+    while !left.is_empty() {
+        let last = &rings[rings.len() - 1];
+        let (next, rest): (Vec<_>, Vec<_>) =
+            left.iter().partition(|&&i| last.iter().any(|&j| faces[i].is_neighbor(&faces[j])));
+        // Faces that no step reaches cannot be on a closed hull; they are put outside.
+        let stuck = next.is_empty();
+        rings.push(if stuck { rest.clone() } else { next });
+        left = if stuck { Vec::new() } else { rest };
+    }
+    rings
 }

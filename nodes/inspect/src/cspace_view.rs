@@ -65,9 +65,9 @@ pub(crate) struct CSpaceView {
 }
 
 impl CSpaceView {
-    pub(crate) fn open(stream: &RecordingStream, size: f64, budget: Budget) -> RecordingStreamResult<Self> {
+    pub(crate) fn open(stream: &RecordingStream, leader: f64, budget: Budget) -> RecordingStreamResult<Self> {
         stream.log_static(ROOT, &rerun::ViewCoordinates::RIGHT_HAND_Z_UP())?;
-        Ok(Self { drawn: Default::default(), budget, leader: 0.45 * size })
+        Ok(Self { drawn: Default::default(), budget, leader })
     }
 
     /// Draws one frame at time `now` (s). The stream's time is set.
@@ -148,7 +148,7 @@ impl CSpaceView {
 fn marker(at: DVec3, color: palette::Rgb) -> Points3D {
     Points3D::new([at.as_vec3().to_array()])
         .with_colors([palette::solid(color)])
-        .with_radii([Radius::new_ui_points(6.0)])
+        .with_radii([Radius::new_ui_points(4.5)])
 }
 
 fn segments(lines: &[[DVec3; 2]], color: palette::Rgb, width: f32) -> LineStrips3D {

@@ -31,9 +31,10 @@ pub(crate) struct ArrowScale {
 }
 
 impl ArrowScale {
-    /// Arrows at the limits are about as long as the part in the hand, in round numbers.
+    /// Arrows at the limits are some four times as long as the part in the hand, in round numbers: most forces are far
+    /// below.
     pub(crate) fn new(size: f64, max_force: f64, max_torque: f64) -> Self {
-        let per = |limit: f64| round_down(size / if limit.is_finite() && limit > 0.0 { limit } else { 10.0 });
+        let per = |limit: f64| round_down(4.0 * size / if limit.is_finite() && limit > 0.0 { limit } else { 10.0 });
         Self { force: per(max_force), torque: per(max_torque), normal: 0.25 * size }
     }
 }
@@ -169,8 +170,8 @@ mod tests {
     #[test]
     fn arrows_have_round_scales() {
         let scale = ArrowScale::new(0.03, 10.0, 0.5);
-        assert!((scale.force - 0.002).abs() < 1e-12, "{scale:?}");
-        assert!((scale.torque - 0.05).abs() < 1e-12, "{scale:?}");
+        assert!((scale.force - 0.01).abs() < 1e-12, "{scale:?}");
+        assert!((scale.torque - 0.2).abs() < 1e-12, "{scale:?}");
         assert!(ArrowScale::new(0.03, f64::INFINITY, 0.0).torque.is_finite());
     }
 }

@@ -22,7 +22,7 @@ pub struct Options {
     pub frames_per_second: Option<f64>,
     /// Where the 3D views look from; `None`: so that everything is in the picture.
     pub eyes: Option<Eyes>,
-    /// Force and torque (N, N.m) whose arrows are about as long as the part in the hand.
+    /// Force and torque (N, N.m) whose arrows are about four times as long as the part in the hand.
     pub full_scale: (f64, f64),
     /// C-obstacles farther from `x` than this many times the part's size are left out.
     pub reach: f64,
@@ -91,6 +91,8 @@ impl Recorder {
         options: &Options,
     ) -> RecordingStreamResult<Self> {
         let size = subject.moving_size();
+        let (low, high) = subject.fixed_bounds();
+        let extent = (high - low).length() + 2.0 * size;
         let scale = ArrowScale::new(size, options.full_scale.0, options.full_scale.1);
         blueprint::send_run(&stream, &options.eyes.unwrap_or_else(|| Eyes::of(&subject)))?;
         legend::open(&stream, &scale)?;
@@ -99,7 +101,7 @@ impl Recorder {
         Ok(Self {
             series: Series::open(&stream)?,
             events: Events::open(&stream)?,
-            cspace: CSpaceView::open(&stream, size, Budget::new(bytes))?,
+            cspace: CSpaceView::open(&stream, 0.17 * extent, Budget::new(bytes))?,
             states: ContactStates::default(),
             graph: ApplicabilityGraph::default(),
             stream,
