@@ -44,7 +44,7 @@ fn system_tests(variables: &Variables) -> Result<Command> {
     let executables = cargo_build::nodes(variables)?;
     let tools = env::bring_python_tools()?;
     let domain = crate::demo::domain::take(None)?;
-    let mut command = variables.command("python3");
+    let mut command = variables.local_command("python3", domain.id);
     let tests = workspace::root().join("tests/python");
     command
         .current_dir(&tests)
@@ -54,11 +54,7 @@ fn system_tests(variables: &Variables) -> Result<Command> {
         .env("PYTHONUNBUFFERED", "1")
         .env("CSPACE_HAPTICS_BIN", executables.folder()?)
         .env("CSPACE_HAPTICS_ROOT", workspace::root())
-        .env("CSPACE_HAPTICS_TOOLS", tools)
-        .env("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-        .env("ROS_LOCALHOST_ONLY", "1")
-        .env_remove("ROS_STATIC_PEERS")
-        .env("ROS_DOMAIN_ID", domain.id.to_string());
+        .env("CSPACE_HAPTICS_TOOLS", tools);
     // Held until the end of this process, that is of all tests.
     std::mem::forget(domain);
     Ok(command)
@@ -124,7 +120,7 @@ impl Steps<'_> {
         for name in &self.skipped {
             println!("skipped: {name}");
         }
-        println!("{} passed, {} skipped, {} failed", self.passed, self.skipped.len(), self.failed.len());
+        println!("{} passed, {} failed, {} skipped", self.passed, self.failed.len(), self.skipped.len());
         if self.failed.is_empty() && self.passed > 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
     }
 }

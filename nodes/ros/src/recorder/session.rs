@@ -63,7 +63,7 @@ impl Recorder {
     /// If the folder exists or cannot be written.
     pub fn create(options: RecorderOptions) -> Outcome<Self> {
         let prefixes = std::env::var_os("AMENT_PREFIX_PATH").unwrap_or_default();
-        let catalog = Catalog::with_prefixes(std::env::split_paths(&prefixes).map(PathBuf::from));
+        let catalog = Catalog::with_prefixes(std::env::split_paths(&prefixes));
         let writer =
             BagWriter::create(&options.output, options.bag.clone()).map_err(|e| Failure::new(e.to_string()))?;
         Ok(Self {

@@ -157,14 +157,8 @@ impl Processes<'_> {
     }
 
     fn node(&self, name: &str) -> Result<Command> {
-        let mut command = self.variables.command(self.executables.get(name)?);
-        command
-            .env("ROS_DOMAIN_ID", self.domain.to_string())
-            .env("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-            .env("ROS_LOCALHOST_ONLY", "1")
-            .env_remove("ROS_STATIC_PEERS")
-            .current_dir(self.output.folder())
-            .arg("--ros-args");
+        let mut command = self.variables.local_command(self.executables.get(name)?, self.domain);
+        command.current_dir(self.output.folder()).arg("--ros-args");
         Ok(command)
     }
 

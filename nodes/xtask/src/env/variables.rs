@@ -42,6 +42,20 @@ impl Variables {
         command
     }
 
+    /// A command with these variables that talks to nodes of this machine in one domain alone.
+    pub fn local_command(&self, program: impl AsRef<OsStr>, domain: u16) -> Command {
+        let mut command = self.command(program);
+        command
+            .env("ROS_DOMAIN_ID", domain.to_string())
+            .env("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+            .env_remove("ROS_LOCALHOST_ONLY")
+            .env_remove("ROS_STATIC_PEERS");
+        if self.get("ROS_DISTRO").as_deref() == Some("humble") {
+            command.env("ROS_LOCALHOST_ONLY", "1"); // Humble knows no discovery range; later ones warn of this name.
+        }
+        command
+    }
+
     /// As lines for a POSIX shell.
     pub fn to_shell(&self) -> String {
         self.0.iter().map(|(name, value)| format!("export {name}='{}'\n", value.replace('\'', r"'\''"))).collect()
