@@ -20,9 +20,15 @@ pub struct RunSummary {
     device_force: f64,
     lowest: DVec3,
     highest: DVec3,
+    part: Vec<DVec3>,
+    /// Lowest z that a point of the part came to, metres, W, and the ticks it was there to within [`AT_REST`].
+    bottom: (f64, u64),
     wakeup: Bins,
     compute: Bins,
 }
+
+/// Heights that differ by no more than this, metres, are one.
+const AT_REST: f64 = 1e-4;
 
 /// A stretch of one formation.
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +53,8 @@ impl Default for RunSummary {
             device_force: 0.0,
             lowest: DVec3::INFINITY,
             highest: DVec3::NEG_INFINITY,
+            part: Vec::new(),
+            bottom: (f64::INFINITY, 0),
             wakeup: Bins::default(),
             compute: Bins::default(),
         }
@@ -54,6 +62,12 @@ impl Default for RunSummary {
 }
 
 impl RunSummary {
+    /// A summary that also says how low the part came: its vertices in its own frame, metres.
+    #[must_use]
+    pub fn of_part(vertices: Vec<DVec3>) -> Self {
+        Self { part: vertices, ..Self::default() }
+    }
+
     /// Takes in the next tick.
     pub fn add(&mut self, tick: &TickRecord) {
         let now = tick.input.stamp;
@@ -67,6 +81,7 @@ impl RunSummary {
         self.device_force = self.device_force.max(tick.out_wrench.force.length());
         self.lowest = self.lowest.min(tick.proxy.translation);
         self.highest = self.highest.max(tick.proxy.translation);
+        self.note_bottom(tick);
         self.wakeup.add(tick.wakeup_ns);
         self.compute.add(tick.compute_ns);
         let name = tick.formation.kind.name();
@@ -83,6 +98,15 @@ impl RunSummary {
                 }
             }
         }
+    }
+
+    fn note_bottom(&mut self, tick: &TickRecord) {
+        let Some(z) = self.part.iter().map(|&p| tick.proxy.transform_point(p).z).reduce(f64::min) else { return };
+        if z < self.bottom.0 - AT_REST {
+            self.bottom = (z, 0);
+        }
+        self.bottom.0 = self.bottom.0.min(z);
+        self.bottom.1 += u64::from(z <= self.bottom.0 + AT_REST);
     }
 
     /// Drops the newest stretch if it was chatter; its time goes to the one before.
@@ -119,6 +143,10 @@ impl fmt::Display for RunSummary {
                 "contact pose    x {:.2} .. {:.2}, y {:.2} .. {:.2}, z {:.2} .. {:.2} mm",
                 low.x, high.x, low.y, high.y, low.z, high.z
             )?;
+        }
+        if self.bottom.1 > 0 {
+            let (z, ticks) = (self.bottom.0 * 1e3, self.bottom.1);
+            writeln!(f, "part's lowest   z {z:.2} mm, within {} mm of it for {ticks} ticks", AT_REST * 1e3)?;
         }
         writeln!(f, "\ncontact formations (shorter than {} ms: left out)", CHATTER_NS / 1_000_000)?;
         writeln!(f, "      from       to  formation     depth mm   force N")?;
@@ -201,6 +229,18 @@ mod tests {
         assert_eq!(names, ["free", "vertex-face", "face-face"]);
         assert_eq!(summary.ticks(), 305);
         assert_eq!(summary.states[1].end.0 - summary.states[1].begin.0, 104_000_000);
+    }
+
+    #[test]
+    fn the_part_rests_at_its_lowest() {
+        let mut summary = RunSummary::of_part(vec![DVec3::ZERO, DVec3::new(0.0, 0.0, -0.5)]);
+        let mut tick = TickRecord::default();
+        for z in [1.0, 0.6, 0.5, 0.50005, 0.9] {
+            tick.proxy.translation.z = z;
+            summary.add(&tick);
+        }
+        assert_eq!(summary.bottom, (0.0, 2));
+        assert!(summary.to_string().contains("part's lowest   z 0.00 mm"));
     }
 
     #[test]

@@ -1,3 +1,4 @@
+use crate::bag_scene::scene_of;
 use crate::failure::Failure;
 use crate::stdout::say;
 use bag::{BagReader, RunSummary, Ticks};
@@ -7,7 +8,9 @@ use std::path::Path;
 pub fn run(dir: &Path) -> Result<(), Failure> {
     let reader = BagReader::open(dir).map_err(Failure::plain)?;
     let mut ticks = Ticks::new(&reader, None).map_err(Failure::plain)?;
-    let mut summary = RunSummary::default();
+    let scene = ticks.find_scene().map(|description| scene_of(dir, &description)).transpose()?;
+    let vertices = scene.iter().flat_map(|s| &s.world.moving).flat_map(|part| part.vertices()).copied().collect();
+    let mut summary = RunSummary::of_part(vertices);
     for tick in ticks.by_ref() {
         summary.add(&tick.map_err(Failure::plain)?);
     }
