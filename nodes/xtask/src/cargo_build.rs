@@ -15,6 +15,29 @@ pub fn cargo() -> Command {
     command
 }
 
+/// Makes r2r's bindings anew when they were made for another ROS.
+///
+/// r2r's build script keeps the bindings of every environment that it has seen, but tells rustc which messages there are
+/// only when it makes them: after a change of ROS and back, parts of its API would be missing.
+///
+/// # Errors
+/// The target folder cannot be written.
+pub fn settle_bindings(variables: &Variables) -> Result<()> {
+    let watched = ["AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "ROS_DISTRO"];
+    let identity = watched.map(|name| format!("{name}={}\n", variables.get(name).unwrap_or_default())).concat();
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace::root().join("target"), PathBuf::from);
+    let stamp = target.join("ros-of-bindings");
+    if std::fs::read_to_string(&stamp).is_ok_and(|known| known == identity) {
+        return Ok(());
+    }
+    let packages = ["-p", "r2r", "-p", "r2r_rcl", "-p", "r2r_msg_gen", "-p", "r2r_actions"];
+    let status = cargo().args(["clean", "--quiet"]).args(packages).status().context("cargo clean cannot be started")?;
+    anyhow::ensure!(status.success(), "cargo clean of r2r's bindings failed ({status})");
+    std::fs::create_dir_all(&target)
+        .and_then(|()| std::fs::write(&stamp, identity))
+        .with_context(|| format!("{} cannot be written", stamp.display()))
+}
+
 /// The executables of a build, by name.
 pub struct Executables(BTreeMap<String, PathBuf>);
 
@@ -38,6 +61,7 @@ impl Executables {
 
 /// Builds the nodes and the offline program in the profile that the tests use too.
 pub fn nodes(variables: &Variables) -> Result<Executables> {
+    settle_bindings(variables)?;
     let step = Step::begin("nodes (cargo build)");
     let mut command = cargo();
     variables.apply(&mut command).args([

@@ -26,6 +26,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     // From here on ROS is sourced throughout and every step takes the whole workspace: with other selections the
     // large dependencies would get other features and be compiled again.
     let variables = env::bring()?;
+    cargo_build::settle_bindings(&variables)?;
     let with_ros = |arguments: &[&str]| {
         let mut command = cargo();
         variables.apply(&mut command).args(arguments);

@@ -21,7 +21,9 @@ const PROBE: &str = "
 import os, sys, sysconfig, importlib.util as u
 v = sys.version_info
 include = sysconfig.get_path('include')
-print(sys.implementation.name, v[0], v[1], sys.executable, include, sep='|')
+# Inside a virtual environment (one of ours may be first on the PATH) the interpreter that it was made from.
+executable = os.path.realpath(getattr(sys, '_base_executable', None) or sys.executable)
+print(sys.implementation.name, v[0], v[1], executable, include, sep='|')
 print(int(u.find_spec('ensurepip') is not None), int(os.path.isfile(os.path.join(include, 'Python.h'))), sep='|')
 ";
 
