@@ -99,7 +99,10 @@ fn map(faces: &[CFacePolygon], near: usize) -> Vec<[f32; 2]> {
     let up = middle.cross(right);
     let bearing = |i: usize| faces[i].normal_w.dot(up).atan2(faces[i].normal_w.dot(right));
     let mut places = vec![[0.0; 2]; faces.len()];
-    for (step, mut ring) in rings(faces, near).into_iter().enumerate().skip(1) {
+    let mut reach = 0.0;
+    for mut ring in rings(faces, near).into_iter().skip(1) {
+        // The labels of more than six need a wider ring.
+        reach = f32::max(reach + 1.0, ring.len() as f32 / 6.0);
         ring.sort_by(|&i, &j| bearing(i).total_cmp(&bearing(j)));
         let turn = std::f64::consts::TAU / ring.len() as f64;
         // The ring as a whole is turned to where its members really are.
@@ -111,7 +114,7 @@ fn map(faces: &[CFacePolygon], near: usize) -> Vec<[f32; 2]> {
         let start = sin.atan2(cos);
         for (k, i) in ring.into_iter().enumerate() {
             let (sin, cos) = (start + turn * k as f64).sin_cos();
-            let radius = RING.map(|r| r * step as f32);
+            let radius = RING.map(|r| r * reach);
             places[i] = [radius[0] * cos as f32, -radius[1] * sin as f32];
         }
     }

@@ -53,7 +53,8 @@ impl Eyes {
     pub(crate) fn of(subject: &Subject) -> Self {
         let (low, high) = subject.fixed_bounds();
         let margin = DVec3::splat(subject.moving_size());
-        let physical = Eye::facing((low, high + DVec3::Z * margin.z));
+        // The part is above, and the corner nearest to the eye reaches far down.
+        let physical = Eye::facing((low - 0.4 * DVec3::Z * margin.z, high + DVec3::Z * margin.z));
         // The C-obstacles are the obstacles grown by the part.
         Self { physical, cspace: Eye::facing((low - margin, high + margin)) }
     }

@@ -62,12 +62,19 @@ pub(crate) struct CSpaceView {
     budget: Budget,
     /// Length of labels' leaders, metres.
     leader: f64,
+    /// Where the view is looked at from at first, metres.
+    eye: DVec3,
 }
 
 impl CSpaceView {
-    pub(crate) fn open(stream: &RecordingStream, leader: f64, budget: Budget) -> RecordingStreamResult<Self> {
+    pub(crate) fn open(
+        stream: &RecordingStream,
+        leader: f64,
+        eye: DVec3,
+        budget: Budget,
+    ) -> RecordingStreamResult<Self> {
         stream.log_static(ROOT, &rerun::ViewCoordinates::RIGHT_HAND_Z_UP())?;
-        Ok(Self { drawn: Default::default(), budget, leader })
+        Ok(Self { drawn: Default::default(), budget, leader, eye })
     }
 
     /// Draws one frame at time `now` (s). The stream's time is set.
@@ -115,11 +122,12 @@ impl CSpaceView {
         let (hip, scp) = (record.hip.translation, record.proxy.translation);
         let force = record.out_wrench.force;
         let apart = hip.distance(scp) > 1e-7;
-        // Labels stand aside on leaders, so that they hide neither the points nor each other.
+        // Labels stand aside on leaders, left and right of the force as the view first shows it, so that they hide neither
+        // the points nor each other; both outside the obstacle, where no C-face hides the leaders.
         let out = force.try_normalize().or((scp - hip).try_normalize()).unwrap_or(DVec3::Z);
-        let side = out.any_orthonormal_vector();
-        let hip_label = hip - (out + 0.6 * side) * self.leader;
-        let scp_label = scp + (side + 0.3 * out) * self.leader;
+        let side = (self.eye - scp).cross(out).try_normalize().unwrap_or_else(|| out.any_orthonormal_vector());
+        let hip_label = scp + (0.45 * out - side) * self.leader;
+        let scp_label = scp + (0.45 * out + side) * self.leader;
         stream.log(HIP, &marker(hip, palette::HIP))?;
         stream.log(SCP, &marker(scp, palette::SCP))?;
         stream.log(TRAIL, &marker(scp, palette::SCP).with_radii([Radius::new_ui_points(1.5)]))?;
@@ -134,13 +142,13 @@ impl CSpaceView {
             .with_radii([Radius::new_ui_points(0.5)])
             .with_show_labels(true);
         stream.log(format!("{LEADERS}/labels"), &anchors)?;
-        let mut lines = vec![[scp, scp_label]];
+        let mut lines = vec![([scp, scp_label], palette::SCP)];
         if apart {
-            lines.push([hip, hip_label]);
+            lines.push(([hip, hip_label], palette::HIP));
         }
-        stream.log(LEADERS, &segments(&lines, palette::PLAIN, 0.8))?;
-        let projection = if apart { vec![[hip, scp]] } else { Vec::new() };
-        stream.log(PROJECTION, &segments(&projection, palette::HIP, 2.0))?;
+        stream.log(LEADERS, &segments(&lines, 1.4))?;
+        let projection = if apart { vec![([hip, scp], palette::HIP)] } else { Vec::new() };
+        stream.log(PROJECTION, &segments(&projection, 2.0))?;
         stream.log(FORCE, &arrow(scp, force * scale.force, palette::FORCE))
     }
 }
@@ -151,8 +159,9 @@ fn marker(at: DVec3, color: palette::Rgb) -> Points3D {
         .with_radii([Radius::new_ui_points(4.5)])
 }
 
-fn segments(lines: &[[DVec3; 2]], color: palette::Rgb, width: f32) -> LineStrips3D {
-    LineStrips3D::new(lines.iter().map(|line| line.map(|p| p.as_vec3().to_array())))
-        .with_colors([palette::solid(color)])
+/// Lines of `width` screen points.
+fn segments(lines: &[([DVec3; 2], palette::Rgb)], width: f32) -> LineStrips3D {
+    LineStrips3D::new(lines.iter().map(|(line, _)| line.map(|p| p.as_vec3().to_array())))
+        .with_colors(lines.iter().map(|(_, color)| palette::solid(*color)))
         .with_radii([Radius::new_ui_points(width / 2.0)])
 }

@@ -94,14 +94,15 @@ impl Recorder {
         let (low, high) = subject.fixed_bounds();
         let extent = (high - low).length() + 2.0 * size;
         let scale = ArrowScale::new(size, options.full_scale.0, options.full_scale.1);
-        blueprint::send_run(&stream, &options.eyes.unwrap_or_else(|| Eyes::of(&subject)))?;
+        let eyes = options.eyes.unwrap_or_else(|| Eyes::of(&subject));
+        blueprint::send_run(&stream, &eyes)?;
         legend::open(&stream, &scale)?;
         physical::open(&stream, &subject)?;
         let frames = options.frames_per_second.unwrap_or(frames).clamp(0.1, 1000.0);
         Ok(Self {
             series: Series::open(&stream)?,
             events: Events::open(&stream)?,
-            cspace: CSpaceView::open(&stream, 0.17 * extent, Budget::new(bytes))?,
+            cspace: CSpaceView::open(&stream, 0.17 * extent, eyes.cspace.position, Budget::new(bytes))?,
             states: ContactStates::default(),
             graph: ApplicabilityGraph::default(),
             stream,
