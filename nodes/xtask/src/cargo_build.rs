@@ -62,22 +62,22 @@ impl Executables {
 /// Builds the nodes and the offline program in the profile that the tests use too.
 pub fn nodes(variables: &Variables) -> Result<Executables> {
     settle_bindings(variables)?;
-    let step = Step::begin("nodes (cargo build)");
     let mut command = cargo();
-    variables.apply(&mut command).args([
-        "build",
-        "-p",
-        "cspace_haptics",
-        "-p",
-        "cli",
-        "--bins",
-        "--message-format",
-        "json-render-diagnostics",
-    ]);
+    build("nodes", variables.apply(&mut command).args(["build", "-p", "cspace_haptics", "-p", "cli", "--bins"]))
+}
+
+/// Builds the offline program alone, which needs no ROS.
+pub fn offline() -> Result<Executables> {
+    build("offline program", cargo().args(["build", "-p", "cli", "--bins"]))
+}
+
+fn build(what: &str, command: &mut Command) -> Result<Executables> {
+    let step = Step::begin(format!("{what} (cargo build)"));
+    command.args(["--message-format", "json-render-diagnostics"]);
     let mut found = BTreeMap::new();
     let log = workspace::cache()?.join("build.log");
     let _ = std::fs::remove_file(&log);
-    step.run_reading(&mut command, &log, |line| {
+    step.run_reading(command, &log, |line| {
         // Cargo's messages are one object a line; what else is printed is for people.
         if !line.starts_with('{') {
             return false;

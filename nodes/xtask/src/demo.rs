@@ -5,7 +5,7 @@ pub mod domain;
 mod output;
 mod processes;
 mod summary;
-mod viewer;
+pub mod viewer;
 
 use crate::cargo_build::{self, Executables};
 use crate::env;

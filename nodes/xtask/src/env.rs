@@ -13,6 +13,7 @@ use crate::workspace;
 use anyhow::Result;
 pub use pypi::bring_python_tools;
 use std::process::ExitCode;
+pub use system::install as install_packages;
 pub use variables::Variables;
 
 /// ROS 2 without our messages: where it lies and how it is reached.

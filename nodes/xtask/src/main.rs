@@ -1,4 +1,4 @@
-//! Everyday commands of the workspace: `cargo xtask env | demo | test | bench`.
+//! Everyday commands of the workspace: `cargo xtask env | demo | test | bench | pictures`.
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -8,6 +8,7 @@ mod cargo_build;
 mod ci;
 mod demo;
 mod env;
+mod pictures;
 mod progress;
 mod workspace;
 
@@ -28,6 +29,8 @@ enum Command {
     Test(ci::Arguments),
     /// Run the benchmarks
     Bench(bench::Arguments),
+    /// Draw the README's pictures anew, without a screen
+    Pictures(pictures::Arguments),
     /// Become another program that ends when this process's parent does
     #[command(hide = true)]
     AsChild {
@@ -43,6 +46,7 @@ fn main() -> ExitCode {
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Test(arguments) => ci::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Pictures(arguments) => pictures::run(&arguments),
         Command::AsChild { parent, program } => demo::child::become_child(parent, &program).map(|()| ExitCode::SUCCESS),
     };
     match outcome {

@@ -56,7 +56,10 @@ impl Viewer {
 }
 
 /// The viewer itself; `bin/rerun` is a Python program that starts it.
-fn program(tools: &Path) -> Result<PathBuf> {
+///
+/// # Errors
+/// The tools do not hold it.
+pub fn program(tools: &Path) -> Result<PathBuf> {
     std::fs::read_dir(tools.join("lib"))
         .into_iter()
         .flatten()
