@@ -34,7 +34,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     };
     steps.run("clippy", &mut with_ros(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]));
     steps.run("rustdoc", with_ros(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"));
-    steps.run("tests of the workspace", &mut with_ros(&["test", "--workspace", "--no-fail-fast"]));
+    steps.run_with("tests of the workspace", || {
+        let mut command = with_ros(&["test", "--workspace", "--no-fail-fast"]);
+        // rerun's own program looks at the recordings that the tests make.
+        command.env("RERUN_CLI", crate::demo::viewer::program(&env::bring_python_tools()?)?);
+        Ok(command)
+    });
     steps.run("SpaceMouse on a virtual device", Command::new("sh").arg(workspace::root().join("tests/uhid/run.sh")));
     steps.run_with("system tests on ROS 2", || system_tests(&variables));
     Ok(steps.conclude())
