@@ -9,9 +9,11 @@ use rerun::{Clear, RecordingStream, RecordingStreamResult};
 use spatial::Pose;
 use std::time::Duration;
 
-/// Orientations of the sweep: three turns, one about each axis of W, a degree and a half a step.
-const STEPS_PER_TURN: usize = 240;
-/// Time line of the sweep.
+/// Orientations of the sweep: three turns, one about each axis of W.
+const TURN_DEG: i64 = 360;
+/// Degrees from one to the next.
+const STEP_DEG: usize = 2;
+/// Time line of the sweep, in whole degrees: counted, since rerun writes seconds behind a duration.
 const SWEEP: &str = "sweep_deg";
 /// The part in the hand, turned, beside the obstacles.
 const PART: &str = "/physical_m/part";
@@ -47,15 +49,12 @@ pub(crate) fn record(stream: &RecordingStream, subject: &Subject) -> RecordingSt
     // The part hovers above the obstacles, where nothing hides it.
     let (low, high) = subject.fixed_bounds();
     let hover = DVec3::new(0.5 * (low.x + high.x), 0.5 * (low.y + high.y), high.z + 1.3 * subject.moving_size());
-    let turn = std::f64::consts::TAU / STEPS_PER_TURN as f64;
-    let mut degrees = 0.0;
-    for axis in [DVec3::Z, DVec3::X, DVec3::Y] {
-        for step in 0..STEPS_PER_TURN {
-            let rotation = DQuat::from_axis_angle(axis, turn * step as f64);
-            stream.set_duration_secs(SWEEP, degrees);
+    for (begin, axis) in (0..).step_by(TURN_DEG as usize).zip([DVec3::Z, DVec3::X, DVec3::Y]) {
+        for degrees in (0..TURN_DEG).step_by(STEP_DEG) {
+            let rotation = DQuat::from_axis_angle(axis, (degrees as f64).to_radians());
+            stream.set_time_sequence(SWEEP, begin + degrees);
             stream.log(PART, &physical::transform(&Pose::new(hover, rotation)))?;
             c_obstacles(stream, subject, rotation)?;
-            degrees += 360.0 / STEPS_PER_TURN as f64;
         }
     }
     Ok(())
