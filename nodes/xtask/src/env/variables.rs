@@ -50,6 +50,11 @@ impl Variables {
             .env("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
             .env_remove("ROS_LOCALHOST_ONLY")
             .env_remove("ROS_STATIC_PEERS");
+        if std::env::var_os("FASTDDS_BUILTIN_TRANSPORTS").is_none() {
+            // A killed process leaves its shared memory locked, and others of Fast DDS wait on it or go deaf: one that dies
+            // must not take the rest along.
+            command.env("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4");
+        }
         if self.get("ROS_DISTRO").as_deref() == Some("humble") {
             command.env("ROS_LOCALHOST_ONLY", "1"); // Humble knows no discovery range; later ones warn of this name.
         }
