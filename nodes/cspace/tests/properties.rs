@@ -138,3 +138,33 @@ fn the_papers_counts() {
         assert_eq!(applicable_c_faces(&c, &c, &pose).len(), 30);
     }
 }
+
+/// Rosell and Vazquez 2004, section III and appendix: 128 nodes, |F_A||V_B| + |V_A||F_B| + |E_A||E_B|, and each
+/// node's arcs by the appendix's three rules, counted by hand.
+#[test]
+fn rosell_vazquez_2004_appendix_neighbours_of_tetrahedron_and_box() {
+    let (t, c) = (polyhedron(&tetrahedron(1.0)), polyhedron(&cuboid(DVec3::ONE)));
+    let graph = ContactGraph::new(&t, &c);
+    let mut of_type = [0; 3];
+    for node in graph.nodes() {
+        let neighbors = graph.neighbors(node);
+        let (which, expected) = match node {
+            // 3 faces and 3 vertices beside, 3 x 3 of type B, 3 x 3 of type C.
+            BasicContact::TypeA { .. } => (0, 3 + 3 + 9 + 9),
+            // 3 vertices and 4 faces beside, 3 x 4 of type C; 3 x 4 of type A by the first rule, from its other end.
+            BasicContact::TypeB { .. } => (1, 3 + 4 + 12 + 12),
+            // 4 edges beside each of the two; 2 x 2 of type A and 2 x 2 of type B from their ends.
+            BasicContact::TypeC { .. } => (2, 4 + 4 + 4 + 4),
+        };
+        of_type[which] += 1;
+        assert_eq!(neighbors.len(), expected, "{node:?}");
+        assert!(!neighbors.contains(&node));
+        let distinct: std::collections::BTreeSet<_> = neighbors.iter().collect();
+        assert_eq!(distinct.len(), neighbors.len(), "{node:?} names a neighbour twice");
+        for other in &neighbors {
+            assert!(graph.neighbors(*other).contains(&node), "the arc from {node:?} to {other:?} has no way back");
+        }
+    }
+    assert_eq!(of_type, [4 * 8, 4 * 6, 6 * 12]);
+    assert_eq!(of_type.iter().sum::<usize>(), 128);
+}
