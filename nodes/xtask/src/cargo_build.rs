@@ -59,11 +59,27 @@ impl Executables {
     }
 }
 
-/// Builds the nodes and the offline program in the profile that the tests use too.
-pub fn nodes(variables: &Variables) -> Result<Executables> {
+/// How the nodes are compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Profile {
+    /// As the tests have it, so that the large dependencies are built once.
+    Dev,
+    /// As they are installed: for figures.
+    Release,
+}
+
+/// Builds the nodes and the offline program.
+///
+/// # Errors
+/// The build fails.
+pub fn nodes(variables: &Variables, profile: Profile) -> Result<Executables> {
     settle_bindings(variables)?;
     let mut command = cargo();
-    build("nodes", variables.apply(&mut command).args(["build", "-p", "cspace_haptics", "-p", "cli", "--bins"]))
+    variables.apply(&mut command).args(["build", "-p", "cspace_haptics", "-p", "cli", "--bins"]);
+    if profile == Profile::Release {
+        command.arg("--release");
+    }
+    build("nodes", &mut command)
 }
 
 /// Builds the offline program alone, which needs no ROS.

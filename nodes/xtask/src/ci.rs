@@ -1,6 +1,6 @@
 //! `cargo xtask test`: everything that CI runs, step by step, to the end even when one fails.
 
-use crate::cargo_build::{self, cargo};
+use crate::cargo_build::{self, Profile, cargo};
 use crate::env::{self, Variables};
 use crate::workspace;
 use anyhow::Result;
@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
 
 /// The Python programs that look at the nodes, the bags and the recordings from outside.
 fn system_tests(variables: &Variables) -> Result<Command> {
-    let executables = cargo_build::nodes(variables)?;
+    let executables = cargo_build::nodes(variables, Profile::Dev)?;
     let tools = env::bring_python_tools()?;
     let domain = crate::demo::domain::take(None)?;
     let mut command = variables.local_command("python3", domain.id);

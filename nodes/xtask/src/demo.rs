@@ -7,7 +7,7 @@ mod processes;
 mod summary;
 pub mod viewer;
 
-use crate::cargo_build::{self, Executables};
+use crate::cargo_build::{self, Executables, Profile};
 use crate::env;
 use crate::workspace;
 use anyhow::{Context, Result, bail};
@@ -31,6 +31,9 @@ pub struct Arguments {
     /// The device in the hand
     #[arg(long, default_value = "simulated", value_parser = ["simulated", "spacemouse"])]
     device: String,
+    /// Run the nodes as they are installed, for figures: another build of everything
+    #[arg(long)]
+    release: bool,
     /// Watch it in the rerun viewer too
     #[arg(long)]
     viewer: bool,
@@ -61,7 +64,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let scene = scene_file(&arguments.scene)?;
     let domain = domain::take(arguments.domain)?;
     let variables = env::bring()?;
-    let executables = cargo_build::nodes(&variables)?;
+    let profile = if arguments.release { Profile::Release } else { Profile::Dev };
+    let executables = cargo_build::nodes(&variables, profile)?;
     check_scene(&executables, &scene)?;
 
     let stop = Arc::new(AtomicBool::new(false));
