@@ -1,6 +1,6 @@
 use crate::principal_contact::{Feature, PrincipalContact};
 use cspace::{EdgeId, FaceId, Polyhedron, VertexId, World};
-use spatial::{DQuat, DVec3};
+use spatial::DVec3;
 use std::sync::Arc;
 
 /// The features of a scene's polyhedra: which of different pieces are one and the same, and which are part of others.
@@ -19,35 +19,12 @@ impl FeatureBook {
         Self { a: Side::new(world.moving.iter().map(|p| (0, p.clone())).collect()), b: Side::new(b) }
     }
 
-    /// The faces that lie flush where smaller features of theirs are said to touch: at the rim of a face, or where another
-    /// piece takes over, only some of the basic contacts of two faces are left. `normal_w` is the contact's, outward from B.
-    pub(crate) fn flush_faces(
-        &self,
-        contact: &PrincipalContact,
-        rotation: DQuat,
-        normal_w: DVec3,
-    ) -> Option<(FaceId, FaceId)> {
-        let normal_w = normal_w.try_normalize()?;
-        let along = |side: &Side, piece: u32, feature: Feature, outward: DVec3| {
-            let polyhedron = &side.pieces.get(piece as usize)?.1;
-            side.faces_at(piece, feature)
-                .into_iter()
-                .find(|f| polyhedron.face_plane(*f).normal.dot(outward) >= 1.0 - 0.5 * FLUSH * FLUSH)
-        };
-        let face_a = along(&self.a, contact.part_a, contact.feature_a, rotation.conjugate() * -normal_w)?;
-        let face_b = along(&self.b, contact.piece_b, contact.feature_b, normal_w)?;
-        Some((face_a, face_b))
-    }
-
     /// Whether both features of `inner` are within those of `outer`.
     pub(crate) fn is_part_of(&self, inner: &PrincipalContact, outer: &PrincipalContact) -> bool {
         self.a.is_within((inner.part_a, inner.feature_a), (outer.part_a, outer.feature_a))
             && self.b.is_within((inner.piece_b, inner.feature_b), (outer.piece_b, outer.feature_b))
     }
 }
-
-/// Faces that differ less in direction lie flush, rad.
-const FLUSH: f64 = 1e-3;
 
 /// The polyhedra of one body or of the obstacles, in one frame.
 #[derive(Clone, Debug)]
@@ -157,15 +134,27 @@ impl Side {
         body == other && !corners.is_empty() && corners.into_iter().all(on)
     }
 
-    /// The faces that meet in a feature.
-    fn faces_at(&self, piece: u32, feature: Feature) -> Vec<FaceId> {
+    /// The faces that meet in a feature, with their outward normals.
+    pub(crate) fn faces_at(&self, piece: u32, feature: Feature) -> Vec<(Feature, DVec3)> {
         let Some((_, p)) = self.pieces.get(piece as usize) else { return Vec::new() };
-        match feature {
+        let faces = match feature {
             Feature::Vertex(v) if v.index() < p.vertices().len() => p.vertex_faces(v).to_vec(),
             Feature::Edge(e) if e.index() < p.edge_count() => p.edge(e).faces.to_vec(),
             Feature::Face(f) if f.index() < p.face_count() => vec![f],
             _ => Vec::new(),
-        }
+        };
+        faces.into_iter().map(|f| (Feature::Face(f), p.face_plane(f).normal)).collect()
+    }
+
+    /// The edge that a feature is, or those that end in it, with their directions.
+    pub(crate) fn edges_at(&self, piece: u32, feature: Feature) -> Vec<(Feature, DVec3)> {
+        let Some((_, p)) = self.pieces.get(piece as usize) else { return Vec::new() };
+        let edges = match feature {
+            Feature::Vertex(v) if v.index() < p.vertices().len() => p.vertex_edges(v).to_vec(),
+            Feature::Edge(e) if e.index() < p.edge_count() => vec![e],
+            _ => Vec::new(),
+        };
+        edges.into_iter().map(|e| (Feature::Edge(e), p.edge_direction(e).normalize_or_zero())).collect()
     }
 
     fn corners(&self, (piece, feature): (u32, Feature)) -> Vec<DVec3> {

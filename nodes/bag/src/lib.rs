@@ -10,6 +10,7 @@ mod convert;
 mod definition;
 mod error;
 mod feature_book;
+mod flush;
 mod info;
 mod mcap_file;
 mod mcap_record;

@@ -59,11 +59,11 @@ impl fmt::Display for PrincipalContact {
     }
 }
 
-/// The principal contacts of a formation in a fixed order. `rotation` is A's in W; with the geometry in `book` faces
-/// that lie in one plane become one, and what is part of a larger contact is left out.
+/// The principal contacts of a formation in a fixed order. `rotations` are A's in W, at the contacts and as the hand holds
+/// it; with the geometry in `book` faces that lie in one plane become one, and what is part of a larger contact is left out.
 pub(crate) fn principal_contacts(
     formation: &ContactFormation,
-    rotation: DQuat,
+    rotations: [DQuat; 2],
     book: Option<&FeatureBook>,
 ) -> Vec<PrincipalContact> {
     let points = formation.points();
@@ -74,7 +74,7 @@ pub(crate) fn principal_contacts(
             continue;
         }
         let group: Vec<&ContactPoint> = points.iter().filter(is_same_pair).collect();
-        let mut contact = of_pair(&group, rotation, book);
+        let mut contact = of_pair(&group, rotations, book);
         if let Some(book) = book {
             (contact.part_a, contact.feature_a) = book.a.representative(contact.part_a, contact.feature_a);
             (contact.piece_b, contact.feature_b) = book.b.representative(contact.piece_b, contact.feature_b);
@@ -92,13 +92,13 @@ pub(crate) fn principal_contacts(
 }
 
 /// The principal contact of one pair, from its basic contacts.
-fn of_pair(group: &[&ContactPoint], rotation: DQuat, book: Option<&FeatureBook>) -> PrincipalContact {
+fn of_pair(group: &[&ContactPoint], rotations: [DQuat; 2], book: Option<&FeatureBook>) -> PrincipalContact {
     let part_a = group[0].part_a;
     let piece_b = group[0].piece_b;
     let kind = group.iter().map(|p| p.kind).max().unwrap_or_default();
     let ids = Ids::of(group);
     let normal_w = group.iter().map(|p| p.normal_w).sum::<DVec3>();
-    let normal_a = rotation.conjugate() * -normal_w;
+    let normal_a = rotations[0].conjugate() * -normal_w;
     let (mut feature_a, mut feature_b) = match kind {
         FormationKind::FaceFace => (ids.face_a(), ids.face_b()),
         FormationKind::EdgeFace if ids.is_face_on_b() => (ids.edge_a(), ids.face_b()),
@@ -117,13 +117,8 @@ fn of_pair(group: &[&ContactPoint], rotation: DQuat, book: Option<&FeatureBook>)
         }
     }
     let contact = PrincipalContact { part_a, feature_a, piece_b, feature_b, kind };
-    match book.and_then(|b| b.flush_faces(&contact, rotation, normal_w)) {
-        Some((face_a, face_b)) => PrincipalContact {
-            feature_a: Feature::Face(face_a),
-            feature_b: Feature::Face(face_b),
-            kind: FormationKind::FaceFace,
-            ..contact
-        },
+    match book {
+        Some(book) => book.with_flush_features(contact, rotations, normal_w),
         None => contact,
     }
 }

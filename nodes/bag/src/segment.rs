@@ -15,7 +15,7 @@ pub struct SegmentOptions {
 
 impl Default for SegmentOptions {
     fn default() -> Self {
-        Self { debounce: 0.02, min_depth: 1e-6 }
+        Self { debounce: 0.02, min_depth: 1e-7 }
     }
 }
 
@@ -217,7 +217,8 @@ impl Segmenter {
     /// The principal contacts of a tick, debounced in depth: a new one needs a hand that is deep enough. (Not the depth of
     /// the contact by itself: laws that hold a proxy state distances at the proxy, where they vanish.)
     fn contacts(&mut self, tick: &TickRecord) -> Vec<PrincipalContact> {
-        let mut contacts = principal_contacts(&tick.formation, tick.proxy.rotation, self.book.as_ref());
+        let rotations = [tick.proxy.rotation, tick.hip.rotation];
+        let mut contacts = principal_contacts(&tick.formation, rotations, self.book.as_ref());
         if tick.depth < self.options.min_depth {
             contacts.retain(|c| self.held.contains(c));
         }
