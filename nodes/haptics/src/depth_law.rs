@@ -4,6 +4,7 @@ use crate::paper_torque::{convex_hull, torque};
 use crate::projection::{Projection, Row};
 use crate::reduced_hull::nearest_point;
 use crate::region::{Clipper, Placed, RegionPoint};
+use crate::shares::Shares;
 use crate::sense::Sensed;
 use crate::solid::Solids;
 use crate::{ContactFormation, ContactPoint, FormationKind, Gains, LawKind};
@@ -50,6 +51,7 @@ pub(crate) struct DepthLaw {
     points: Vec<RegionPoint>,
     places: Vec<DVec3>,
     weights: Vec<f64>,
+    shares: Shares,
     order: Vec<u16>,
     hull: Vec<DVec3>,
     clipper: Clipper,
@@ -70,6 +72,7 @@ impl DepthLaw {
             points: Vec::with_capacity(ROOM),
             places: Vec::with_capacity(ROOM),
             weights: Vec::with_capacity(ROOM),
+            shares: Shares::new(ROOM),
             order: vec![0; ROOM],
             hull: Vec::with_capacity(ROOM),
             clipper: Clipper::for_world(world),
@@ -262,6 +265,9 @@ impl DepthLaw {
             if let Some(w) = self.weights.iter_mut().max_by(|a, b| a.total_cmp(b)) {
                 *w = 1.0;
             }
+        }
+        if law == LawKind::Blended {
+            self.shares.spread(&self.places, &mut self.weights, &mut self.order);
         }
         let p = nearest_point(&self.places, &self.weights, &mut self.order, x0);
         force.cross(x0 - p)

@@ -20,6 +20,7 @@ mod region;
 mod renderer;
 mod seams;
 mod sense;
+mod shares;
 mod solid;
 #[cfg(test)]
 mod testing;
