@@ -3,9 +3,9 @@
 use crate::paper_torque::{convex_hull, torque};
 use crate::projection::{Projection, Row};
 use crate::reduced_hull::nearest_point;
-use crate::region::{Clipper, Placed, RegionPoint};
-use crate::shares::Shares;
+use crate::region::{Clipper, Placed, RegionPoint, Scope};
 use crate::sense::Sensed;
+use crate::shares::Shares;
 use crate::solid::Solids;
 use crate::{ContactFormation, ContactPoint, FormationKind, Gains, LawKind};
 use cspace::{BasicContact, CFace};
@@ -192,7 +192,9 @@ impl DepthLaw {
             t.tie *= if was_multiple { 1.5 } else { 1.0 };
             let limit = t.plane.distance + if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
             t.first = self.points.len();
-            self.clipper.region(solids, part, piece, placed, &t.plane, true, f64::INFINITY, &mut self.points);
+            let scope =
+                Scope { reach: f64::INFINITY, near_felt: true, wide: law == LawKind::Blended, along_near: true };
+            self.clipper.region(solids, part, piece, placed, &t.plane, &scope, &mut self.points);
             // How deep each contact is under Near's plane: along Near's normal none can be deeper than Near.
             let normal = t.plane.normal_w;
             let mut kept = t.first;

@@ -3,7 +3,7 @@
 use crate::formation::{ContactFormation, ContactPoint, FormationKind};
 use crate::paper_torque::convex_hull;
 use crate::proxy::Step;
-use crate::region::{Clipper, Placed, RegionPoint, most_parallel};
+use crate::region::{Clipper, Placed, RegionPoint, Scope, most_parallel};
 use crate::sense::{Sense, Sensed};
 use crate::solid::Solids;
 use cspace::{BasicContact, CFace};
@@ -148,7 +148,8 @@ impl View {
     fn list(&mut self, solids: &Solids, s: &Sensed, plane: &CFace, felt: bool, placed: &Placed) {
         let first = self.points.len();
         let (part, piece) = (s.part as usize, s.piece as usize);
-        self.clipper.region(solids, part, piece, placed, plane, felt, self.reach, &mut self.points);
+        let scope = Scope { reach: self.reach, near_felt: felt, wide: false, along_near: false };
+        self.clipper.region(solids, part, piece, placed, plane, &scope, &mut self.points);
         self.pairs.push(InReach { part: s.part, piece: s.piece, first, end: self.points.len() });
     }
 

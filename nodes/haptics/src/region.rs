@@ -49,15 +49,33 @@ struct Corner {
     leaving: Side,
 }
 
+/// Which contacts of a region are wanted, and seen in which direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scope {
+    /// Contacts with a gap of up to this, metres.
+    pub reach: f64,
+    /// Near's own contact, at its exact place.
+    pub near_felt: bool,
+    /// Not only of the two most nearly parallel faces, but of all at Near's features that lean less than 60 degrees.
+    pub wide: bool,
+    /// The faces are laid on each other along Near's normal, in which the crossing of Near's edges is exact; else along the
+    /// normal of B's face, in which A's vertices touch it.
+    pub along_near: bool,
+}
+
 /// Scratch for clipping; grows at construction only.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Clipper {
     subject: Vec<Corner>,
     result: Vec<Corner>,
+    pairs: Vec<(FaceId, FaceId)>,
 }
 
 /// Contacts closer together than this part of the size are one.
 const SAME_POINT: f64 = 1e-8;
+/// Most pairs of faces clipped for one contact, and the cosine up to which they count as facing each other.
+const MAX_PAIRS: usize = 8;
+const FACING: f64 = -0.5;
 /// Edges that cross at less than this angle (radians) have no reliable common normal: the face's is used.
 const PARALLEL_EDGES: f64 = 0.02;
 
@@ -69,13 +87,17 @@ impl Clipper {
         let b = world.fixed.iter().map(|p| most(&p.polyhedron)).max().unwrap_or(0);
         // A convex polygon gains at most one corner per clipping line; rounding is allowed as much again.
         let room = 2 * (a + b) + 8;
-        Self { subject: Vec::with_capacity(room), result: Vec::with_capacity(room) }
+        Self {
+            subject: Vec::with_capacity(room),
+            result: Vec::with_capacity(room),
+            pairs: Vec::with_capacity(MAX_PAIRS),
+        }
     }
 
-    /// Appends to `out` the contacts of the region between the most nearly parallel faces at `near`, those with a gap of
-    /// up to `reach` metres (Near's own among them only if `near_felt`), as long as `out` has room. Faces inside the assembly of their own body are never chosen,
-    /// and where B's face goes on in another piece there is no border to touch.
-    #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
+    /// Appends to `out` the contacts of the region between the faces at `near` that `scope` asks for, as long as `out` has
+    /// room. Faces inside the assembly of their own body are never chosen, and where B's face goes on in another piece
+    /// there is no border to touch.
+    #[expect(clippy::too_many_arguments, reason = "one call site each; a struct would only rename them")]
     pub fn region(
         &mut self,
         solids: &Solids,
@@ -83,36 +105,65 @@ impl Clipper {
         piece: usize,
         placed: &Placed,
         near: &CFace,
-        near_felt: bool,
-        reach: f64,
+        scope: &Scope,
         out: &mut Vec<RegionPoint>,
     ) {
         let (a, b) = (solids.part(part), solids.piece(piece));
         let same = SAME_POINT * (a.size() + b.size());
         let first = out.len();
         // Near's own contact first, at its exact place, when its features face each other.
-        let own = if near_felt { facing_point(a, b, placed, near, 1e3 * same) } else { None };
-        if let Some(point_w) = own.filter(|_| near.distance <= reach) {
+        let own = if scope.near_felt { facing_point(a, b, placed, near, 1e3 * same) } else { None };
+        if let Some(point_w) = own.filter(|_| near.distance <= scope.reach) {
             let (gap, normal_w) = (near.distance, near.normal_w);
             let span_w = normal_w * gap;
-            push(RegionPoint { contact: near.contact, point_w, normal_w, gap, span_w }, reach, same, first, out);
+            push(RegionPoint { contact: near.contact, point_w, normal_w, gap, span_w }, scope.reach, same, first, out);
         }
-        let Some((face_a, face_b)) = most_parallel(solids, part, piece, &placed.r, near) else { return };
+        self.pairs.clear();
+        if scope.wide {
+            facing_pairs(solids, part, piece, &placed.r, near, &mut self.pairs);
+        } else {
+            self.pairs.extend(most_parallel(solids, part, piece, &placed.r, near));
+        }
+        for k in 0..self.pairs.len() {
+            let (face_a, face_b) = self.pairs[k];
+            self.faces(solids, part, piece, placed, near, own.is_some(), (face_a, face_b), scope, first, out);
+        }
+    }
+
+    /// Appends the contacts between one face of each body.
+    #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
+    fn faces(
+        &mut self,
+        solids: &Solids,
+        part: usize,
+        piece: usize,
+        placed: &Placed,
+        near: &CFace,
+        own: bool,
+        (face_a, face_b): (FaceId, FaceId),
+        scope: &Scope,
+        first: usize,
+        out: &mut Vec<RegionPoint>,
+    ) {
+        let (a, b) = (solids.part(part), solids.piece(piece));
+        let same = SAME_POINT * (a.size() + b.size());
         let plane_b = b.face_plane(face_b);
         let normal_a = -(placed.r * a.face_plane(face_a).normal);
         let lean = normal_a.dot(plane_b.normal);
-        if lean > 0.1 {
-            self.clip(a, face_a, b, face_b, placed, same);
+        let along = if scope.along_near { near.normal_w } else { plane_b.normal };
+        let slope = along.dot(plane_b.normal);
+        if lean > 0.1 && slope > 0.1 && along.dot(normal_a) > 0.1 {
+            self.clip(a, face_a, b, face_b, placed, along, same);
             let ring_a = (a.face_vertices(face_a), a.face_edges(face_a));
             let ring_b = (b.face_vertices(face_b), b.face_edges(face_b));
             for k in 0..self.subject.len() {
                 let before = self.subject[(k + self.subject.len() - 1) % self.subject.len()].leaving;
                 let Corner { point, leaving } = self.subject[k];
                 let height = plane_b.signed_distance(point);
-                if height * lean > reach && height > reach {
+                if height * lean > scope.reach && height > scope.reach {
                     continue;
                 }
-                let span_w = plane_b.normal * height;
+                let span_w = along * (height / slope);
                 let foot = point - span_w;
                 let found = match (before, leaving) {
                     (Side::A(_), Side::A(i)) => RegionPoint {
@@ -154,26 +205,35 @@ impl Clipper {
                         }
                     }
                 };
-                if own.is_none() || found.contact != near.contact {
-                    push(found, reach, same, first, out);
+                if !own || found.contact != near.contact {
+                    push(found, scope.reach, same, first, out);
                 }
             }
         }
     }
 
-    /// A's face, cut by the sides of B's face (Sutherland and Hodgman 1974), along B's normal; left in `subject`.
+    /// A's face, cut by the sides of B's face (Sutherland and Hodgman 1974) seen in the direction `sight`; left in `subject`.
     /// The corners lie on A's face.
-    fn clip(&mut self, a: &Polyhedron, face_a: FaceId, b: &Polyhedron, face_b: FaceId, placed: &Placed, same: f64) {
+    #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
+    fn clip(
+        &mut self,
+        a: &Polyhedron,
+        face_a: FaceId,
+        b: &Polyhedron,
+        face_b: FaceId,
+        placed: &Placed,
+        sight: DVec3,
+        same: f64,
+    ) {
         self.subject.clear();
         for (i, v) in a.face_vertices(face_a).iter().enumerate() {
             self.subject.push(Corner { point: placed.point(a.vertex(*v)), leaving: Side::A(i as u16) });
         }
         let ring_b = b.face_vertices(face_b);
-        let normal = b.face_plane(face_b).normal;
         for j in 0..ring_b.len() {
             let start = b.vertex(ring_b[j]);
             let along = b.vertex(ring_b[(j + 1) % ring_b.len()]) - start;
-            let inward = normal.cross(along);
+            let inward = sight.cross(along);
             let offset = inward.dot(start);
             let tolerance = same * along.length();
             self.result.clear();
@@ -220,6 +280,35 @@ pub(crate) fn most_parallel(
     r: &DMat3,
     near: &CFace,
 ) -> Option<(FaceId, FaceId)> {
+    let mut best = (f64::INFINITY, None);
+    for_each_pair(solids, part, piece, r, near, |cosine, faces| {
+        if cosine < best.0 {
+            best = (cosine, Some(faces));
+        }
+    });
+    best.1
+}
+
+/// The pairs of faces at the features of `near` that face each other: the most nearly antiparallel, and as many others as
+/// `out` has room for.
+fn facing_pairs(solids: &Solids, part: usize, piece: usize, r: &DMat3, near: &CFace, out: &mut Vec<(FaceId, FaceId)>) {
+    out.extend(most_parallel(solids, part, piece, r, near));
+    for_each_pair(solids, part, piece, r, near, |cosine, faces| {
+        if cosine < FACING && out.len() < out.capacity() && out.first() != Some(&faces) {
+            out.push(faces);
+        }
+    });
+}
+
+/// Calls `each` with the pairs of surface faces at the features of `near`, and the cosine between their outward normals.
+fn for_each_pair(
+    solids: &Solids,
+    part: usize,
+    piece: usize,
+    r: &DMat3,
+    near: &CFace,
+    mut each: impl FnMut(f64, (FaceId, FaceId)),
+) {
     let (a, b) = (solids.part(part), solids.piece(piece));
     let (one_a, one_b);
     let (edge_a_faces, edge_b_faces);
@@ -237,17 +326,12 @@ pub(crate) fn most_parallel(
             (&edge_a_faces, &edge_b_faces)
         }
     };
-    let mut best = (f64::INFINITY, None);
     for i in faces_a.iter().filter(|f| !solids.is_internal_a(part, **f)) {
         let normal = *r * a.face_plane(*i).normal;
         for j in faces_b.iter().filter(|f| !solids.is_internal_b(piece, **f)) {
-            let c = b.face_plane(*j).normal.dot(normal);
-            if c < best.0 {
-                best = (c, Some((*i, *j)));
-            }
+            each(b.face_plane(*j).normal.dot(normal), (*i, *j));
         }
     }
-    best.1
 }
 
 /// Normal and gap of two crossing edges whose vertical distance above B's face is `height`.
