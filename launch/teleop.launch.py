@@ -23,8 +23,14 @@ def generate_launch_description():
                               description="The device in the hand"),
         DeclareLaunchArgument("scene", default_value="peg_in_hole", description="A scene.yaml, or the name of an installed scene"),
         DeclareLaunchArgument("law", default_value="proxy", choices=["paper", "pstar", "blended", "proxy"], description="Force law"),
+        DeclareLaunchArgument("enabled", default_value="false", choices=["true", "false"],
+                              description="Whether force is on from the start, without calls of ~/enable of device and servo"),
         DeclareLaunchArgument("params_file", default_value=PathJoinSubstitution([share, "config", "haptic_servo.param.yaml"]),
-                              description="Parameters of the servo"),
+                              description="Parameters of the servo; the arguments above come on top of them"),
+        DeclareLaunchArgument("device_params_file", default_value=PathJoinSubstitution([share, "config", "haptic_device.param.yaml"]),
+                              description="Parameters of the device; the arguments above come on top of them"),
+        DeclareLaunchArgument("robot_params_file", default_value=PathJoinSubstitution([share, "config", "haptic_follower.param.yaml"]),
+                              description="Parameters of the following robot: limits, network, wall"),
         Node(
             package="cspace_haptics",
             executable="haptic_device",
@@ -32,7 +38,14 @@ def generate_launch_description():
             namespace=namespace,
             output="screen",
             condition=device_side,
-            parameters=[{"device.driver": ParameterValue(LaunchConfiguration("device"), value_type=str)}],
+            parameters=[
+                LaunchConfiguration("device_params_file"),
+                {
+                    "scene": ParameterValue(LaunchConfiguration("scene"), value_type=str),
+                    "device.driver": ParameterValue(LaunchConfiguration("device"), value_type=str),
+                    "enabled": ParameterValue(LaunchConfiguration("enabled"), value_type=bool),
+                },
+            ],
         ),
         Node(
             package="cspace_haptics",
@@ -47,6 +60,7 @@ def generate_launch_description():
                     "scene": ParameterValue(LaunchConfiguration("scene"), value_type=str),
                     "device.driver": "topic",
                     "law": ParameterValue(LaunchConfiguration("law"), value_type=str),
+                    "enabled": ParameterValue(LaunchConfiguration("enabled"), value_type=bool),
                 },
             ],
         ),
@@ -57,6 +71,7 @@ def generate_launch_description():
             namespace=namespace,
             output="screen",
             condition=robot_side,
+            parameters=[LaunchConfiguration("robot_params_file")],
             # What the robot measures is felt by the hand.
             remappings=[("~/wrench", "haptic_servo/remote_wrench")],
         ),

@@ -1,75 +1,22 @@
-"""The launch files, with recorders in place of launch and launch_ros, which PyPI does not have: they load, name
-executables and files that exist, describe every argument, and the XML twin says the same as its Python one."""
+"""The launch files: they load, name executables and files that exist, describe every argument, and the XML twin says the
+same as its Python one. What they start is started in test_installation.py and test_two_hands.py."""
 
-import importlib.util
-import sys
-import types
 import unittest
 import xml.etree.ElementTree as ElementTree
 
+from launch_stub import LAUNCH, Launch, arguments_of, load
 from support import ROOT
 
-LAUNCH = ROOT / "launch"
-
-
-class Recorded:
-    """Stands for any class of launch: keeps what it was made with."""
-
-    def __init__(self, *arguments, **options):
-        self.arguments = arguments
-        self.options = options
-
-
-def module(name, *classes):
-    made = types.ModuleType(name)
-    for each in classes:
-        setattr(made, each, type(each, (Recorded,), {}))
-    return made
-
-
-STUBS = [
-    module("launch", "LaunchDescription"),
-    module("launch.actions", "DeclareLaunchArgument"),
-    module("launch.conditions", "IfCondition"),
-    module("launch.substitutions", "LaunchConfiguration", "PathJoinSubstitution", "PythonExpression"),
-    module("launch_ros"),
-    module("launch_ros.actions", "Node"),
-    module("launch_ros.parameter_descriptions", "ParameterValue"),
-    module("launch_ros.substitutions", "FindPackageShare"),
-]
-
-
-def load(path):
-    """The actions of a launch file."""
-    spec = importlib.util.spec_from_file_location(path.name.replace(".", "_"), path)
-    loaded = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(loaded)
-    return loaded.generate_launch_description().arguments[0]
-
-
-def kind(action, name):
-    return type(action).__name__ == name
+# Arguments that have no default.
+NEEDED = {"record.launch.py": {"output": "bag"}}
 
 
 class LaunchFiles(unittest.TestCase):
-    def setUp(self):
-        before = {stub.__name__: sys.modules.get(stub.__name__) for stub in STUBS}
-        sys.modules.update({stub.__name__: stub for stub in STUBS})
-
-        def restore():
-            for name, value in before.items():
-                if value is None:
-                    del sys.modules[name]
-                else:
-                    sys.modules[name] = value
-
-        self.addCleanup(restore)
-
     def test_arguments_are_described_and_used_ones_declared(self):
         files = sorted(LAUNCH.glob("*.launch.py"))
         self.assertEqual([f.name for f in files], ["inspect.launch.py", "record.launch.py", "servo.launch.py", "teleop.launch.py"])
         for file in files:
-            declared = {a.arguments[0]: a.options for a in load(file) if kind(a, "DeclareLaunchArgument")}
+            declared = arguments_of(load(file))
             for name, options in declared.items():
                 self.assertTrue(options.get("description"), f"{file.name}: {name}")
                 if "choices" in options and "default_value" in options:
@@ -78,43 +25,48 @@ class LaunchFiles(unittest.TestCase):
             used = {part.split('"')[1] for part in text.split("LaunchConfiguration(")[1:] if part.startswith('"')}
             self.assertEqual(used, set(declared), file.name)
 
-    def test_nodes_are_executables_of_the_package(self):
+    def test_nodes_are_executables_of_the_package_with_files_that_exist(self):
         executables = {f.stem for f in (ROOT / "nodes/ros/src/bin").glob("*.rs")}
         for file in LAUNCH.glob("*.launch.py"):
-            nodes = [a for a in load(file) if kind(a, "Node")]
-            self.assertTrue(nodes, file.name)
-            for node in nodes:
-                self.assertEqual(node.options["package"], "cspace_haptics")
-                self.assertIn(node.options["executable"], executables)
-                self.assertEqual(node.options["name"], node.options["executable"])
+            commands = list(Launch(file.name, **NEEDED.get(file.name, {})).commands())
+            self.assertTrue(commands, file.name)
+            for executable, words in commands:
+                self.assertIn(executable, executables)
+                self.assertIn(f"__node:={executable}", words)
+                for flag, value in zip(words, words[1:]):
+                    if flag == "--params-file":
+                        self.assertTrue((ROOT / value).is_file(), value)
+
+    def test_two_computers_start_what_one_would(self):
+        def names(**arguments):
+            return [name for name, _ in Launch("teleop.launch.py", **arguments).commands()]
+
+        self.assertEqual(names(side="device") + names(side="robot"), names())
 
     def test_the_xml_twin_says_the_same(self):
         actions = load(LAUNCH / "servo.launch.py")
         python = {
-            a.arguments[0]: (a.options.get("default_value"), a.options.get("choices", []), a.options["description"])
-            for a in actions
-            if kind(a, "DeclareLaunchArgument")
+            name: (options.get("default_value"), options.get("choices", []), options["description"])
+            for name, options in arguments_of(actions).items()
         }
         root = ElementTree.parse(LAUNCH / "servo.launch.xml").getroot()
         twin = {
             a.get("name"): (a.get("default"), [c.get("value") for c in a.findall("choice")], a.get("description"))
             for a in root.findall("arg")
         }
-        self.assertEqual(set(twin), set(python))
+        self.assertEqual(list(twin), list(python))
+        self.assertEqual(twin["params_file"][0], "$(find-pkg-share cspace_haptics)/config/haptic_servo.param.yaml")
         for name in set(twin) - {"params_file"}:
             self.assertEqual(twin[name], python[name], name)
-        (node,) = [a for a in actions if kind(a, "Node")]
-        values = node.options["parameters"][1]
-        self.assertEqual({p.get("name") for p in root.find("node").findall("param") if p.get("name")}, set(values))
-
-    def test_the_parameter_file_exists_and_is_installed(self):
-        self.assertTrue((ROOT / "config/haptic_servo.param.yaml").is_file())
-        manifest = (ROOT / "nodes/ros/Cargo.toml").read_text()
-        self.assertIn('install_to_share = ["launch", "config"]', manifest)
-        for folder in ("launch", "config"):
-            self.assertTrue((ROOT / "nodes/ros" / folder).is_dir())
-        package = ElementTree.parse(ROOT / "nodes/ros/package.xml").getroot()
-        self.assertEqual(package.find("export/build_type").text, "ament_cargo")
+        (node,) = [a for a in actions if a.kind == "Node"]
+        twin = root.find("node")
+        for attribute, option in (("exec", "executable"), ("pkg", "package"), ("name", "name"), ("output", "output")):
+            self.assertEqual(twin.get(attribute), node.options[option])
+        values = {name: value.arguments[0].arguments[0] for name, value in node.options["parameters"][1].items()}
+        self.assertEqual({p.get("name"): p.get("value") for p in twin.findall("param") if p.get("name")},
+                         {name: f"$(var {argument})" for name, argument in values.items()})
+        self.assertEqual({r.get("from"): r.get("to") for r in twin.findall("remap")},
+                         {old: f"$(var {new.arguments[0]})" for old, new in node.options["remappings"]})
 
 
 if __name__ == "__main__":

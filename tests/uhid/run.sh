@@ -1,14 +1,15 @@
 #!/bin/sh
 # The real SpaceMouse driver against a virtual device of the kernel's uhid, in a small virtual machine.
 #   tests/uhid/run.sh [VMLINUZ MODULES]     a kernel and its modules' folder; by default those of this machine
-# Needs qemu-system-x86_64, a static busybox and cpio (Debian: qemu-system-x86 busybox-static cpio), and for the kernel
-# `apt-get download linux-image-VERSION-amd64 && dpkg-deb -x ...` where none is installed.
+# Needs qemu-system-x86_64, a static busybox and cpio (Debian: qemu-system-x86 busybox-static cpio), and a kernel with uhid.
+# `cargo xtask test` brings what is missing when root, the kernel unpacked from its package where none is installed.
 # Exit 0 passed, 1 failed, 77 skipped, which it says.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() { echo "SKIPPED: uhid test: $1"; exit 77; }
 kernel=${1:-/boot/vmlinuz-$(uname -r)}
 modules=${2:-/lib/modules/$(uname -r)}
+[ "$(uname -m)" = x86_64 ] || skip "it is made for x86-64, this is $(uname -m)"
 for tool in qemu-system-x86_64 cpio busybox; do
     command -v "$tool" >/dev/null || skip "$tool is not installed (Debian: apt install qemu-system-x86 busybox-static cpio)"
 done

@@ -23,8 +23,17 @@ pub fn declared() -> Vec<Declared> {
         .into_iter()
         .filter(|d| d.name.starts_with("device.") || ["frame_id", "scene", "enabled"].contains(&d.name.as_str()))
         .collect();
-    all.retain(|d| d.name != "device.trust_stamps");
-    all.push(Declared::fixed("publish_rate", V::Double(1000.0), "rate of ~/pose and ~/twist [Hz]").within(1.0, 1000.0));
+    // What the servo asks of a device behind topics is none of the device's business.
+    all.retain(|d| !["device.trust_stamps", "device.timeout"].contains(&d.name.as_str()));
+    for driver in all.iter_mut().filter(|d| d.name == "device.driver") {
+        driver.choices.retain(|c| c != "topic");
+        driver.description =
+            "Where the hand's pose comes from: simulated operator, file of poses, or SpaceMouse.".into();
+    }
+    all.push(
+        Declared::fixed("publish_rate", V::Double(1000.0), "rate of ~/pose, ~/twist and ~/wrench [Hz]")
+            .within(1.0, 1000.0),
+    );
     all.push(
         Declared::fixed(
             "command_timeout",
@@ -67,6 +76,7 @@ pub struct DeviceNode {
     pose: Talker<PoseStamped>,
     twist: Talker<TwistStamped>,
     joy: Talker<Joy>,
+    shown: Talker<WrenchStamped>,
     diagnostics: Publisher<DiagnosticArray>,
     command: Listener<WrenchStamped>,
     enable: Inbox<ServiceRequest<SetBool::Service>>,
@@ -74,6 +84,7 @@ pub struct DeviceNode {
     commanded: Commanded,
     last: Sample,
     pose_due: Due,
+    shown_due: Due,
     joy_due: Due,
     report_due: Due,
 }
@@ -94,11 +105,13 @@ impl DeviceNode {
             pose: Talker::new(node, "~/pose", qos::sensor())?,
             twist: Talker::new(node, "~/twist", qos::sensor())?,
             joy: Talker::new(node, "~/joy", qos::sensor())?,
+            shown: Talker::new(node, "~/wrench", qos::sensor())?,
             diagnostics: node.create_publisher("/diagnostics", QosProfile::default())?,
             command: Listener::new(node, "~/command/wrench", qos::sensor())?,
             enable: Inbox::new(node.create_service::<SetBool::Service>("~/enable", QosProfile::services_default())?),
             enabled: parameters.switch("enabled"),
             pose_due: Due::every(1.0 / parameters.number("publish_rate")),
+            shown_due: Due::every(1.0 / parameters.number("publish_rate")),
             joy_due: Due::every(0.02),
             report_due: Due::every(1.0),
             commanded: Commanded::default(),
@@ -118,7 +131,11 @@ impl DeviceNode {
         self.host.say_ready();
         let outcome = self.turns();
         self.device.write(&Wrench::ZERO);
-        outcome
+        let header = Header { stamp: self.host.now().into(), frame_id: self.frame_id.clone() };
+        // The force is gone whether or not anybody can be told.
+        let told = self.shown.say(&WrenchStamped { header, wrench: Wrench::ZERO.into() });
+        self.host.spin_once(Duration::from_millis(20));
+        outcome.and(told)
     }
 
     fn turns(&mut self) -> Outcome<()> {
@@ -136,10 +153,21 @@ impl DeviceNode {
             self.serve(now)?;
             let wrench = self.commanded.at(now, self.enabled, self.parameters.number("command_timeout"));
             self.device.write(&wrench);
+            self.tell_shown(&wrench)?;
             let sample = self.device.read(now);
             self.publish(now, &sample)?;
         }
         Ok(())
+    }
+
+    /// What the hand feels, stamped when the device was told: what came on the command topic and was not too old.
+    fn tell_shown(&mut self, wrench: &Wrench) -> Outcome<()> {
+        let at = self.host.now();
+        if !self.shown_due.at(at) {
+            return Ok(());
+        }
+        let header = Header { stamp: at.into(), frame_id: self.frame_id.clone() };
+        self.shown.say(&WrenchStamped { header, wrench: (*wrench).into() })
     }
 
     fn serve(&mut self, now: Stamp) -> Outcome<()> {

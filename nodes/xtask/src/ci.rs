@@ -2,7 +2,7 @@
 
 use crate::cargo_build::{self, Profile, cargo};
 use crate::env::{self, Variables};
-use crate::workspace;
+use crate::{virtual_machine, workspace};
 use anyhow::Result;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         command.env("RERUN_CLI", crate::demo::viewer::program(&env::bring_python_tools()?)?);
         Ok(command)
     });
-    steps.run("SpaceMouse on a virtual device", Command::new("sh").arg(workspace::root().join("tests/uhid/run.sh")));
+    steps.run_with("SpaceMouse on a virtual device", || Ok(virtual_machine::spacemouse_test()));
     steps.run_with("system tests on ROS 2", || system_tests(&variables));
     Ok(steps.conclude())
 }
@@ -49,6 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
 fn system_tests(variables: &Variables) -> Result<Command> {
     let executables = cargo_build::nodes(variables, Profile::Dev)?;
     let tools = env::bring_python_tools()?;
+    let packaging = env::packaging::bring()?;
     let domain = crate::demo::domain::take(None)?;
     let mut command = variables.local_command("python3", domain.id);
     let tests = workspace::root().join("tests/python");
@@ -60,7 +61,9 @@ fn system_tests(variables: &Variables) -> Result<Command> {
         .env("PYTHONUNBUFFERED", "1")
         .env("CSPACE_HAPTICS_BIN", executables.folder()?)
         .env("CSPACE_HAPTICS_ROOT", workspace::root())
-        .env("CSPACE_HAPTICS_TOOLS", tools);
+        .env("CSPACE_HAPTICS_TOOLS", tools)
+        .env("CSPACE_HAPTICS_COLCON", packaging.modules)
+        .env("CSPACE_HAPTICS_CARGO_AMENT", packaging.programs);
     // Held until the end of this process, that is of all tests.
     std::mem::forget(domain);
     Ok(command)

@@ -3,6 +3,7 @@
 mod fix_ups;
 mod libclang;
 mod overlay;
+pub mod packaging;
 mod pypi;
 mod python;
 mod sourced;
@@ -13,7 +14,7 @@ use crate::workspace;
 use anyhow::Result;
 pub use pypi::bring_python_tools;
 use std::process::ExitCode;
-pub use system::install as install_packages;
+pub use system::{install as install_packages, may_install as may_install_packages, program};
 pub use variables::Variables;
 
 /// ROS 2 without our messages: where it lies and how it is reached.

@@ -10,6 +10,7 @@ mod demo;
 mod env;
 mod pictures;
 mod progress;
+mod virtual_machine;
 mod workspace;
 
 #[derive(Parser)]

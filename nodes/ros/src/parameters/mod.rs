@@ -5,6 +5,8 @@
 
 mod declared;
 mod server;
+mod template;
 
 pub use declared::Declared;
 pub use server::{Change, ParameterServer};
+pub use template::yaml_template;

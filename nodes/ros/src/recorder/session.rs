@@ -1,5 +1,5 @@
-use super::RecorderOptions;
 use super::tick_count::TickCount;
+use super::{LogClock, RecorderOptions};
 use crate::{Failure, Host, Inbox, Outcome, qos};
 use bag::msg::{Message, TickBatch};
 use bag::{BagWriter, Catalog, Qos, TopicId};
@@ -18,6 +18,7 @@ pub struct Recorder {
     passed_over: BTreeSet<String>,
     looked: Option<Instant>,
     ticks: TickCount,
+    clock: LogClock,
 }
 
 struct Recorded {
@@ -74,6 +75,7 @@ impl Recorder {
             passed_over: BTreeSet::new(),
             looked: None,
             ticks: TickCount::default(),
+            clock: LogClock::default(),
         })
     }
 
@@ -88,7 +90,10 @@ impl Recorder {
             self.look(host)?;
         }
         host.spin_once(timeout);
-        let now = host.now();
+        let (now, stepped_back) = self.clock.at(host.now());
+        if let Some(seconds) = stepped_back.filter(|s| *s > 1e-3) {
+            host.warn(&format!("the clock went back by {seconds:.3} s; log times go on from where they were"));
+        }
         let mut came = false;
         for (name, topic) in &mut self.topics {
             while let Some(bytes) = topic.inbox.take() {

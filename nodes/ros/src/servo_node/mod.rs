@@ -10,6 +10,7 @@ mod pose_file;
 mod setup;
 mod topic_link;
 mod topics;
+mod transforms;
 
 pub use batch::Batcher;
 pub use contact_events::ContactEvents;
@@ -20,3 +21,4 @@ pub use node::ServoNode;
 pub use setup::{apply, declared, scene_file};
 pub use topic_link::TopicLink;
 pub use topics::{Frames, ServoTopics};
+pub use transforms::Transforms;

@@ -67,7 +67,8 @@ impl ServoNode {
         let scene = Scene::load(&file).map_err(|e| Failure::new(e.to_string()))?;
         let frames = Frames { world: config.frame_id.clone(), part: config.child_frame_id.clone() };
         let node = &mut host.node;
-        let topics = ServoTopics::new(node, frames, &scene.world, config.publish_rate, config.realtime.rate)?;
+        let (rate, tick_rate) = (config.publish_rate, config.realtime.rate);
+        let topics = ServoTopics::new(node, frames, &scene.world, rate, tick_rate, parameters.switch("publish_tf"))?;
         let contacts = Talker::new(node, "~/contacts", qos::latched(1))?;
         let cspace = Talker::new(node, "~/cspace", QosProfile::default())?;
         let scene_talker = Talker::new(node, "~/scene", qos::latched(1))?;

@@ -15,6 +15,11 @@ pub fn declared() -> Vec<Declared> {
         "whether force is on from the start, without a call of ~/enable",
     ));
     all.push(Declared::fixed(
+        "publish_tf",
+        V::Bool(true),
+        "whether /tf tells child_frame_id (the hand's pose) and child_frame_id_proxy in frame_id, if this ROS has tf2_msgs",
+    ));
+    all.push(Declared::fixed(
         "device.trust_stamps",
         V::Bool(true),
         "driver `topic`: whether the driver's clock is this machine's or synchronised to it, so that a sample is as old as its stamp says",

@@ -1,4 +1,4 @@
-use super::{Batcher, Due};
+use super::{Batcher, Due, Transforms};
 use crate::convert::MarkerPainter;
 use crate::{Outcome, Talker, qos};
 use bag::msg;
@@ -25,6 +25,7 @@ pub struct ServoTopics {
     wrench: Talker<msg::WrenchStamped>,
     ticks: Talker<msg::TickBatch>,
     markers: Publisher<MarkerArray>,
+    transforms: Option<Transforms>,
     painter: MarkerPainter,
     batcher: Batcher,
     poses_due: Due,
@@ -33,12 +34,22 @@ pub struct ServoTopics {
 }
 
 impl ServoTopics {
-    /// Offers the topics; poses and wrenches go out `publish_rate` times a second.
+    /// Offers the topics; poses and wrenches go out `publish_rate` times a second, and transforms with them if
+    /// `publish_tf` and this ROS has them.
     ///
     /// # Errors
     /// The middleware refuses a topic.
-    pub fn new(node: &mut Node, frames: Frames, world: &World, publish_rate: f64, tick_rate: f64) -> Outcome<Self> {
+    pub fn new(
+        node: &mut Node,
+        frames: Frames,
+        world: &World,
+        publish_rate: f64,
+        tick_rate: f64,
+        publish_tf: bool,
+    ) -> Outcome<Self> {
+        let transforms = publish_tf.then(|| Transforms::offer(node, &frames.world, &frames.part)).flatten();
         Ok(Self {
+            transforms,
             pose: Talker::new(node, "~/pose", qos::sensor())?,
             proxy_pose: Talker::new(node, "~/proxy_pose", qos::sensor())?,
             wrench: Talker::new(node, "~/wrench", qos::sensor())?,
@@ -63,6 +74,9 @@ impl ServoTopics {
             self.pose.say(&self.pose_message(at, &tick.hip))?;
             self.proxy_pose.say(&self.pose_message(at, &tick.proxy))?;
             self.wrench.say(&self.wrench_message(at, &tick.out_wrench))?;
+            if let Some(transforms) = &self.transforms {
+                transforms.tell(tick)?;
+            }
         }
         if self.batcher.add(tick, lost) {
             self.flush()?;

@@ -1,0 +1,70 @@
+"""Two hands at once: the teleoperation launched twice, in the namespaces left and right, each with a force of its own."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import motions
+from client import Client, norm, qos
+from cspace_haptics_msgs.msg import ContactState, SceneDescription, ServoConfiguration
+from geometry_msgs.msg import WrenchStamped
+from launch_stub import Launch
+from support import enter, wait_until
+
+# By namespace: stiffness in N/m, depth in m.
+HANDS = {"left": (500.0, 0.001), "right": (2000.0, 0.0015)}
+
+
+class TwoHands(unittest.TestCase):
+    def start(self, folder, name, stiffness, depth):
+        poses = motions.write(folder / f"{name}.csv", lambda t: depth, 120, 500)
+        device = folder / f"{name}_device.yaml"
+        device.write_text(f"/**:\n  ros__parameters:\n    device:\n      file: {poses}\n")
+        servo = folder / f"{name}_servo.yaml"
+        servo.write_text(
+            "/**:\n  ros__parameters:\n"
+            f"    gains: {{stiffness: {stiffness}, damping: 0.0}}\n    passivity: {{enabled: false}}\n    device: {{timeout: 0.5}}\n"
+        )
+        launch = Launch("teleop.launch.py", namespace=name, enabled="true", scene=motions.SCENE, law="paper", device="replay",
+                        params_file=str(servo), device_params_file=str(device))
+        return launch.start(self, cwd=folder)
+
+    def test_each_hand_feels_its_own_force(self):
+        folder = Path(enter(self, tempfile.TemporaryDirectory()))
+        client = enter(self, Client("observer"))
+        shown = {name: client.listen(WrenchStamped, f"/{name}/haptic_device/wrench", qos()) for name in HANDS}
+        nodes = {name: self.start(folder, name, *HANDS[name]) for name in HANDS}
+
+        def felt(name):
+            return [norm(m.wrench.force) for m in shown[name][-100:]]
+
+        for name, (stiffness, depth) in HANDS.items():
+            force = stiffness * depth
+            wait_until(lambda: len(f := felt(name)) == 100 and all(abs(x - force) < 1e-6 * force for x in f), f"{force} N, {felt(name)[-1:]}")
+        # Nothing of the one reaches the other, and who comes late is told at once by both.
+        graph = client.node
+        for name in HANDS:
+            for topic in ("haptic_device/pose", "haptic_device/command/wrench", "haptic_servo/remote_wrench"):
+                offers = graph.get_publishers_info_by_topic(f"/{name}/{topic}")
+                self.assertEqual({o.node_namespace for o in offers}, {f"/{name}"}, topic)
+        latched = qos(reliable=True, latched=True, depth=1)
+        with Client("late_joiner") as late:
+            for name in HANDS:
+                scenes = late.listen(SceneDescription, f"/{name}/haptic_servo/scene", latched)
+                configurations = late.listen(ServoConfiguration, f"/{name}/haptic_servo/configuration", latched)
+                states = late.listen(ContactState, f"/{name}/haptic_servo/contacts", latched)
+                self.assertEqual(late.wait(scenes)[0].name, "corner")
+                self.assertIn(f"stiffness: {HANDS[name][0]}", late.wait(configurations)[0].yaml)
+                self.assertEqual(late.wait(states)[-1].kind, ContactState.KIND_FACE_FACE)
+        # One hand lets go: the other does not notice.
+        for process in nodes["left"].values():
+            self.assertEqual(process.end(), 0, process.text)
+        before = len(shown["right"])
+        wait_until(lambda: len(shown["right"]) > before + 500, "500 more wrenches on the right")
+        force = HANDS["right"][0] * HANDS["right"][1]
+        self.assertTrue(all(abs(norm(m.wrench.force) - force) < 1e-6 * force for m in shown["right"][before:]))
+        self.assertEqual(norm(shown["left"][-1].wrench.force), 0.0, "the last word on the left")
+
+
+if __name__ == "__main__":
+    unittest.main()
