@@ -1,6 +1,7 @@
 use crate::{BasicContact, EdgeId, FaceId, Polyhedron, VertexId};
 use glam::DVec2;
 use spatial::{DQuat, DVec3};
+use std::collections::BTreeSet;
 
 /// One flat face of the C-obstacle `B (+) (-R A)` at one orientation, as a convex polygon (paper, section II).
 ///
@@ -67,20 +68,17 @@ pub fn c_face_polygons(a: &Polyhedron, b: &Polyhedron, rotation: DQuat) -> Vec<C
 }
 
 /// The Minkowski sum of B and the mirrored, turned A.
-struct Sum<'p> {
+pub(crate) struct Sum<'p> {
     a: &'p Polyhedron,
     b: &'p Polyhedron,
+    rotation: DQuat,
     /// `-R a` for every vertex of A.
     mirrored_a: Vec<DVec3>,
-    /// `-R n` for every face of A.
-    mirrored_normals: Vec<DVec3>,
-    corners_a: Vec<VertexId>,
-    corners_b: Vec<VertexId>,
     tolerance: f64,
 }
 
 impl<'p> Sum<'p> {
-    fn new(a: &'p Polyhedron, b: &'p Polyhedron, rotation: DQuat) -> Self {
+    pub(crate) fn new(a: &'p Polyhedron, b: &'p Polyhedron, rotation: DQuat) -> Self {
         let extent = |p: &Polyhedron| {
             let o = p.vertices()[0];
             p.vertices().iter().map(|v| v.distance(o)).fold(0.0, f64::max)
@@ -88,30 +86,49 @@ impl<'p> Sum<'p> {
         Self {
             a,
             b,
+            rotation,
             mirrored_a: a.vertices().iter().map(|&v| -(rotation * v)).collect(),
-            mirrored_normals: a.faces().map(|f| -(rotation * a.face_plane(f).normal)).collect(),
-            corners_a: a.corner_ids().collect(),
-            corners_b: b.corner_ids().collect(),
             tolerance: ROUNDING * extent(a).max(extent(b)),
         }
     }
 
     fn polygons(&self) -> Vec<CFacePolygon> {
-        let mut facets: Vec<Facet> = self.candidate_normals().into_iter().map(|n| self.facet(n)).collect();
+        let corners: [Vec<VertexId>; 2] = [self.a.corner_ids().collect(), self.b.corner_ids().collect()];
+        let mut facets: Vec<Facet> = self.candidate_normals().into_iter().map(|n| self.facet(n, &corners)).collect();
         // Coplanar C-faces have the same support sets, whichever of them proposed the normal.
         facets.sort_by(|p, q| (&p.support_a, &p.support_b).cmp(&(&q.support_a, &q.support_b)));
         facets.dedup_by(|p, q| p.support_a == q.support_a && p.support_b == q.support_b);
-        facets.retain(|f| planar_hull(&self.points(f), f.normal, self.tolerance).len() >= 3);
+        facets.retain(|f| self.spans_face(f));
+        self.polygons_of(facets)
+    }
+
+    /// Whether the points that touch span a polygon, not a segment or a point.
+    pub(crate) fn spans_face(&self, facet: &Facet) -> bool {
+        planar_hull(&self.points(facet), facet.normal, self.tolerance).len() >= 3
+    }
+
+    /// The polygons of facets that span one each; coplanar ones are one polygon.
+    pub(crate) fn polygons_of(&self, facets: Vec<Facet>) -> Vec<CFacePolygon> {
         let mut polygons: Vec<CFacePolygon> = coplanar_groups(facets).iter().filter_map(|g| self.polygon(g)).collect();
         self.unify_corners(&mut polygons);
         polygons
     }
 
-    fn facet(&self, normal: DVec3) -> Facet {
+    fn facet(&self, normal: DVec3, [corners_a, corners_b]: &[Vec<VertexId>; 2]) -> Facet {
         Facet {
             normal,
-            support_a: support(&self.mirrored_a, &self.corners_a, normal, self.tolerance),
-            support_b: support(self.b.vertices(), &self.corners_b, normal, self.tolerance),
+            support_a: support(&self.mirrored_a, corners_a, normal, self.tolerance),
+            support_b: support(self.b.vertices(), corners_b, normal, self.tolerance),
+        }
+    }
+
+    /// The facet across `normal` of which a vertex of A and one of B are known to touch.
+    pub(crate) fn facet_at(&self, normal: DVec3, vertex_a: u32, vertex_b: u32) -> Facet {
+        let (from_a, from_b) = (VertexId(vertex_a), VertexId(vertex_b));
+        Facet {
+            normal,
+            support_a: support_around(self.a, &self.mirrored_a, from_a, normal, self.tolerance),
+            support_b: support_around(self.b, self.b.vertices(), from_b, normal, self.tolerance),
         }
     }
 
@@ -124,11 +141,12 @@ impl<'p> Sum<'p> {
     /// Every normal that a face of the sum can have: those of the faces, and of the edge pairs whose arcs cross on the
     /// Gauss sphere. Ties are let in; they do not span a polygon and fall out later.
     fn candidate_normals(&self) -> Vec<DVec3> {
-        let mut normals = self.mirrored_normals.clone();
+        let mirrored: Vec<DVec3> = self.a.faces().map(|f| -(self.rotation * self.a.face_plane(f).normal)).collect();
+        let mut normals = mirrored.clone();
         normals.extend(self.b.faces().map(|f| self.b.face_plane(f).normal));
         for edge_a in self.a.edges() {
             let [fa0, fa1] = self.a.edge(edge_a).faces;
-            let arc_a = (self.mirrored_normals[fa0.index()], self.mirrored_normals[fa1.index()]);
+            let arc_a = (mirrored[fa0.index()], mirrored[fa1.index()]);
             let [va0, va1] = self.a.edge(edge_a).vertices;
             let along_a = self.mirrored_a[va1.index()] - self.mirrored_a[va0.index()];
             for edge_b in self.b.edges() {
@@ -209,10 +227,17 @@ impl<'p> Sum<'p> {
 }
 
 /// A plane that touches the sum, and the vertices of A and B that touch it.
-struct Facet {
+pub(crate) struct Facet {
     normal: DVec3,
     support_a: Vec<VertexId>,
     support_b: Vec<VertexId>,
+}
+
+impl Facet {
+    /// What tells two facets apart.
+    pub(crate) fn supports(&self) -> (Vec<VertexId>, Vec<VertexId>) {
+        (self.support_a.clone(), self.support_b.clone())
+    }
 }
 
 /// Facets that are coplanar with one of their group, by single linkage.
@@ -233,20 +258,42 @@ fn spanned_faces(p: &Polyhedron, support: &[VertexId]) -> Vec<FaceId> {
     if support.len() < 3 {
         return Vec::new();
     }
-    p.faces().filter(|&f| p.face_vertices(f).iter().all(|v| support.contains(v))).collect()
+    let faces: BTreeSet<FaceId> = support.iter().flat_map(|v| p.vertex_faces(*v)).copied().collect();
+    faces.into_iter().filter(|&f| p.face_vertices(f).iter().all(|v| support.contains(v))).collect()
 }
 
 fn spanned_edges(p: &Polyhedron, support: &[VertexId]) -> Vec<EdgeId> {
     if support.len() < 2 {
         return Vec::new();
     }
-    p.edges().filter(|&e| p.edge(e).vertices.iter().all(|v| support.contains(v))).collect()
+    let edges: BTreeSet<EdgeId> = support.iter().flat_map(|v| p.vertex_edges(*v)).copied().collect();
+    edges.into_iter().filter(|&e| p.edge(e).vertices.iter().all(|v| support.contains(v))).collect()
 }
 
 /// The corners that lie farthest along `n`, ascending.
 fn support(points: &[DVec3], corners: &[VertexId], n: DVec3, tolerance: f64) -> Vec<VertexId> {
     let top = corners.iter().map(|v| n.dot(points[v.index()])).fold(f64::NEG_INFINITY, f64::max);
     corners.iter().copied().filter(|v| n.dot(points[v.index()]) >= top - tolerance).collect()
+}
+
+/// The same, found from one of them: on a convex body they hang together by edges.
+fn support_around(p: &Polyhedron, points: &[DVec3], from: VertexId, n: DVec3, tolerance: f64) -> Vec<VertexId> {
+    let height = |v: VertexId| n.dot(points[v.index()]);
+    let mut top = height(from);
+    let mut found = vec![from];
+    let mut next = 0;
+    while next < found.len() {
+        for &w in p.vertex_vertices(found[next]) {
+            if height(w) >= top - tolerance && !found.contains(&w) {
+                top = top.max(height(w));
+                found.push(w);
+            }
+        }
+        next += 1;
+    }
+    found.retain(|v| height(*v) >= top - tolerance);
+    found.sort_unstable();
+    found
 }
 
 /// Whether two arcs of the Gauss sphere cross or touch: each separates the other's ends, in the same hemisphere.

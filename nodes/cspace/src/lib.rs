@@ -10,6 +10,7 @@ mod body;
 mod body_tracker;
 mod bvh;
 mod c_face;
+mod c_face_patch;
 mod c_face_polygon;
 mod certificate;
 mod contact;

@@ -253,6 +253,15 @@ impl Tracker {
         &self.b
     }
 
+    pub(crate) fn bodies(&self) -> (&Body, &Body) {
+        (&self.bodies.0, &self.bodies.1)
+    }
+
+    /// Near of the last step.
+    pub(crate) fn near(&self) -> Option<BasicContact> {
+        self.state.is_seeded().then(|| self.state.near())
+    }
+
     /// Forgets the past and finds the globally nearest C-face at `pose` (A in W).
     pub fn seed(&mut self, pose: &Pose) -> Tracked {
         self.state.forget();

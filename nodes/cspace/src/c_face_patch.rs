@@ -1,0 +1,46 @@
+use crate::c_face_polygon::{Facet, Sum};
+use crate::walk::Placed;
+use crate::{BasicContact, CFacePolygon, Tracker};
+use spatial::Pose;
+use std::collections::{BTreeSet, VecDeque};
+
+/// Nodes of the graph that are looked at for each face wanted: where C-faces are coplanar, many nodes are one face.
+const NODES_PER_FACE: usize = 16;
+
+impl Tracker {
+    /// The faces of the C-obstacle around Near at the orientation of `pose`, the last one that was tracked: at most `most`
+    /// of them, taken from Near outward step by step along the applicability subgraph (paper, section II.A). They are
+    /// the same polygons as [`crate::c_face_polygons`] makes, all of them if `most` allows.
+    ///
+    /// Cost `O(|A| + |B| + most log most)`, where the first two are a multiplication for each vertex; allocates: for
+    /// pictures and messages, never for the tick. Empty before the first step.
+    #[must_use]
+    pub fn polygons_around_near(&self, pose: &Pose, most: usize) -> Vec<CFacePolygon> {
+        let (body_a, body_b) = self.bodies();
+        let Some(near) = self.near() else { return Vec::new() };
+        let placed = Placed::new(body_a, body_b, pose);
+        let sum = Sum::new(self.moving(), self.fixed(), pose.rotation);
+        let mut facets: Vec<Facet> = Vec::new();
+        let mut known = BTreeSet::new();
+        let mut seen = BTreeSet::from([near]);
+        let mut queue = VecDeque::from([near]);
+        while let Some(node) = queue.pop_front() {
+            let (vertex_a, vertex_b) = placed.vertices_of(node);
+            let facet = sum.facet_at(placed.plane(node).normal_w, vertex_a, vertex_b);
+            // Between parallel edges the graph has nodes of no area, which tie coplanar C-faces together.
+            if !known.contains(&facet.supports()) && sum.spans_face(&facet) {
+                if facets.len() == most {
+                    break;
+                }
+                known.insert(facet.supports());
+                facets.push(facet);
+            }
+            placed.each_neighbor(node, |next: BasicContact| {
+                if seen.len() < most.saturating_mul(NODES_PER_FACE) && seen.insert(next) {
+                    queue.push_back(next);
+                }
+            });
+        }
+        sum.polygons_of(facets)
+    }
+}
