@@ -1,36 +1,18 @@
 //! The laws that read the wrench off the hand's own pose: `paper`, `pstar` and `blended`.
 
 use crate::paper_torque::{convex_hull, torque};
-use crate::projection::{Projection, Row};
 use crate::reduced_hull::nearest_point;
 use crate::region::{Clipper, Placed, RegionPoint, Scope};
+use crate::scp::{Scp, TIED, Touch};
 use crate::sense::Sensed;
 use crate::shares::Shares;
 use crate::solid::Solids;
 use crate::{ContactFormation, ContactPoint, FormationKind, Gains, LawKind};
-use cspace::{BasicContact, CFace};
+use cspace::BasicContact;
 use spatial::{DVec3, Pose, Wrench};
 
-/// Contacts whose depths differ by less than this part of the moving part's size take place together; half as much again keeps
-/// them together once they are, so that the formation does not chatter.
-const TIED: f64 = 1e-6;
 /// Planes are one constraint when their normals differ by less than this (radians) and their offsets by this part of the part's size.
 const EQUAL: f64 = 4e-6;
-
-/// A pair is free of the SCP when its plane is violated by no more than this, metres.
-const FREED: f64 = 1e-9;
-
-/// A pair whose plane counts: the felt one, and its contacts in the scratch list.
-#[derive(Clone, Copy, Debug)]
-struct Touch {
-    part: u32,
-    piece: u32,
-    plane: CFace,
-    first: usize,
-    end: usize,
-    tie: f64,
-    push: f64,
-}
 
 /// What a depth law made of a pose.
 #[derive(Clone, Copy, Debug)]
@@ -43,11 +25,9 @@ pub(crate) struct DepthResult {
 }
 
 /// Scratch of the depth laws, and whether contact was multiple at the last tick.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct DepthLaw {
-    touches: Vec<Touch>,
-    rows: Vec<Row<3>>,
-    projection: Projection<3>,
+    scp: Scp,
     points: Vec<RegionPoint>,
     places: Vec<DVec3>,
     weights: Vec<f64>,
@@ -63,25 +43,22 @@ const ROOM: usize = 256;
 
 impl DepthLaw {
     pub fn new(solids: &Solids) -> Self {
-        let world = &solids.world;
-        let pairs = world.moving.len() * world.fixed.len();
         Self {
-            touches: Vec::with_capacity(pairs),
-            rows: Vec::with_capacity(pairs),
-            projection: Projection::new(),
+            scp: Scp::new(solids),
             points: Vec::with_capacity(ROOM),
             places: Vec::with_capacity(ROOM),
             weights: Vec::with_capacity(ROOM),
             shares: Shares::new(ROOM),
             order: vec![0; ROOM],
             hull: Vec::with_capacity(ROOM),
-            clipper: Clipper::for_world(world),
+            clipper: Clipper::for_world(&solids.world),
             multiple: false,
         }
     }
 
     pub fn reset(&mut self) {
         self.multiple = false;
+        self.scp.reset();
     }
 
     /// The wrench at the hand's pose from the pairs sensed there.
@@ -95,22 +72,20 @@ impl DepthLaw {
     ) -> DepthResult {
         let placed = Placed::new(hip);
         let x0 = hip.translation;
-        let depth = self.project(solids, pairs, hip, &placed);
+        self.points.clear();
+        let depth = self.scp.find(solids, pairs, hip, &placed);
         let mut result =
             DepthResult { wrench: Wrench::ZERO, scp: x0, depth, formation: ContactFormation::FREE, dropped: 0 };
         if depth <= 0.0 {
             self.multiple = false;
             return result;
         }
-        let shift = DVec3::from_array(self.projection.z);
+        let shift = self.scp.shift();
         result.scp = x0 + shift; // one plane alone: (1)
-        for (i, m) in self.projection.active() {
-            self.touches[i].push = m;
-        }
         result.wrench.force = shift * gains.stiffness; // (2)
         self.contacts(solids, &placed, law, gains, &mut result);
-        for i in 0..self.touches.len() {
-            let t = self.touches[i];
+        for i in 0..self.scp.touches.len() {
+            let t = self.scp.touches[i];
             if t.push > 0.0 {
                 result.wrench.torque += self.torque_of(i, t, x0, law, gains);
             }
@@ -120,71 +95,14 @@ impl DepthLaw {
 
     /// The penetration of the hand's pose, metres, `>= 0`.
     pub fn depth(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose) -> f64 {
-        self.project(solids, pairs, hip, &Placed::new(hip))
-    }
-
-    /// Corners by projection: SCP = argmin |p - x0|^2 with p on the free side of one felt plane per pair. Leaves planes
-    /// and multipliers in `touches` and `projection`; returns the depth, metres, the largest over the planes that count.
-    fn project(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
-        self.touches.clear();
-        self.points.clear();
-        self.rows.clear();
-        let deepest = pairs.iter().map(|p| -p.near.distance).fold(0.0, f64::max);
-        if deepest <= 0.0 {
-            return 0.0;
-        }
-        let mut unfelt = 0;
-        for s in pairs {
-            // Free pairs stay as constraints as far as the SCP may be pushed into them.
-            if s.near.distance > 2.0 * deepest {
-                continue;
-            }
-            if solids.is_felt(s.part as usize, s.piece as usize, hip, placed, &s.near) {
-                self.touch(solids, s, s.near);
-            } else if s.near.distance < 0.0 {
-                unfelt += 1;
-            }
-        }
-        self.projection.solve(&self.rows);
-        if unfelt > 0 {
-            self.add_unfelt(solids, pairs, hip, placed);
-        }
-        self.touches.iter().map(|t| -t.plane.distance).fold(0.0, f64::max)
-    }
-
-    /// A pair whose nearest plane is a seam needs a felt plane of its own only where the others do not free it anyway: one
-    /// plane with `f >= 0` at the SCP, felt or not, proves freedom.
-    fn add_unfelt(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) {
-        for s in pairs.iter().filter(|s| s.near.distance < 0.0) {
-            let (part, piece) = (s.part as usize, s.piece as usize);
-            let shift = DVec3::from_array(self.projection.z);
-            let freed = |c: &CFace| c.distance + c.normal_w.dot(shift) >= -FREED;
-            if freed(&s.near) || solids.is_felt(part, piece, hip, placed, &s.near) {
-                continue;
-            }
-            if let Some(plane) = solids.felt_plane(part, piece, hip, placed, &s.near) {
-                // An equal plane adds nothing to the force, but its contacts belong to the region.
-                let again = !freed(&plane);
-                self.touch(solids, s, plane);
-                if again {
-                    self.projection.solve(&self.rows);
-                }
-            }
-        }
-    }
-
-    fn touch(&mut self, solids: &Solids, s: &Sensed, plane: CFace) {
-        let tie = 2.0 * solids.part(s.part as usize).size() * TIED;
-        self.touches.push(Touch { part: s.part, piece: s.piece, plane, first: 0, end: 0, tie, push: 0.0 });
-        let normal = plane.normal_w.to_array();
-        self.rows.push(Row { normal, offset: -plane.distance, equality: false });
+        self.scp.depth(solids, pairs, hip, &Placed::new(hip))
     }
 
     /// Clips the contact regions of the penetrating pairs and states the formation.
     fn contacts(&mut self, solids: &Solids, placed: &Placed, law: LawKind, gains: &Gains, result: &mut DepthResult) {
         // One state for all pairs: the pieces of one obstacle must switch together.
         let was_multiple = std::mem::take(&mut self.multiple);
-        for t in &mut self.touches {
+        for t in &mut self.scp.touches {
             if t.plane.distance >= 0.0 {
                 continue;
             }
@@ -241,7 +159,7 @@ impl DepthLaw {
         self.places.clear();
         self.weights.clear();
         let fade = if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
-        for (j, u) in self.touches.iter().enumerate() {
+        for (j, u) in self.scp.touches.iter().enumerate() {
             let equal = i == j
                 || (u.plane.normal_w - normal).length() <= EQUAL
                     && (u.plane.distance - t.plane.distance).abs() <= EQUAL * t.tie / TIED;

@@ -18,6 +18,7 @@ mod proxy_view;
 mod reduced_hull;
 mod region;
 mod renderer;
+mod scp;
 mod seams;
 mod sense;
 mod shares;

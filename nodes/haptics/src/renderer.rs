@@ -11,7 +11,7 @@ use spatial::{Pose, Wrench};
 use std::sync::Arc;
 
 /// Pairs this close to the hand may bound the SCP, metres.
-const SCP_MARGIN: f64 = 5e-3;
+pub(crate) const SCP_MARGIN: f64 = 5e-3;
 /// Time over which the wrench passes from one law to another, s.
 const CROSSFADE: f64 = 0.05;
 

@@ -1,0 +1,302 @@
+//! The surface contact point: the nearest touching configuration to the hand's at its orientation, one or more obstacles.
+
+use crate::projection::{Projection, Row};
+use crate::region::{Placed, facing_point};
+use crate::renderer::SCP_MARGIN;
+use crate::sense::{Sense, Sensed};
+use crate::solid::Solids;
+use cspace::CFace;
+use spatial::{DVec3, Pose};
+
+/// Contacts whose depths differ by less than this part of the moving part's size take place together; half as much again keeps
+/// them together once they are, so that the formation does not chatter.
+pub(crate) const TIED: f64 = 1e-6;
+/// A pair is free of the SCP when its plane is violated by no more than this, metres; and touches up to as much above it.
+const FREED: f64 = 1e-9;
+/// Rounds in which planes are taken anew at the SCP found.
+const ROUNDS: usize = 12;
+/// An SCP farther than this many depths from the hand is compared with what other starts lead to.
+const FAR: f64 = 3.0;
+/// Pairs this close to the SCP are looked at there, in sizes of the moving part.
+const BESIDE: f64 = 6.0;
+/// Most starts tried when the first leads nowhere.
+const STARTS: usize = 5;
+
+/// A pair whose plane counts: the felt one, and its contacts in the scratch list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch {
+    pub part: u32,
+    pub piece: u32,
+    /// Its `distance` is that of the hand.
+    pub plane: CFace,
+    pub first: usize,
+    pub end: usize,
+    pub tie: f64,
+    /// Share of the force that the plane carries: shift = sum push_i normal_i, metres.
+    pub push: f64,
+}
+
+/// Finds the SCP: corners by projection, `argmin |p - x0|^2` with p on the free side of one plane per pair.
+///
+/// Planes near the hand decide. Where obstacles crowd, these may ask too much (planes that meet far beyond their
+/// faces) or too little; then each pair's plane is taken anew at the SCP itself until it touches and penetrates nothing.
+/// One plane of a pair with `f >= 0` is enough for freedom, so each round admits the last one's SCP and comes nearer.
+#[derive(Debug)]
+pub(crate) struct Scp {
+    pub touches: Vec<Touch>,
+    best: Vec<Touch>,
+    rows: Vec<Row<3>>,
+    projection: Projection<3>,
+    shift: DVec3,
+    /// The tracker that looks around from the SCP.
+    around: Sense,
+    /// The last SCP.
+    last: Option<DVec3>,
+}
+
+impl Scp {
+    pub fn new(solids: &Solids) -> Self {
+        let world = &solids.world;
+        let pairs = world.moving.len() * world.fixed.len();
+        let size = world.moving.iter().map(|p| p.size()).fold(0.0, f64::max);
+        Self {
+            touches: Vec::with_capacity(pairs),
+            best: Vec::with_capacity(pairs),
+            rows: Vec::with_capacity(pairs),
+            projection: Projection::new(),
+            shift: DVec3::ZERO,
+            around: Sense::new(world.clone(), BESIDE * size),
+            last: None,
+        }
+    }
+
+    pub fn reset(&mut self) {
+        self.last = None;
+        self.around.reset();
+    }
+
+    /// From the hand to the SCP, metres, axes of W.
+    pub fn shift(&self) -> DVec3 {
+        self.shift
+    }
+
+    /// The penetration of the hand's pose, metres, `>= 0`: the largest over the planes that count.
+    pub fn depth(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
+        self.last = None;
+        self.project(solids, pairs, hip, placed)
+    }
+
+    /// Finds the SCP and the planes that hold it, in `touches`; returns the depth as [`Scp::depth`] does.
+    pub fn find(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
+        let depth = self.project(solids, pairs, hip, placed);
+        if depth <= 0.0 {
+            self.last = None;
+            return depth;
+        }
+        self.take_projection();
+        if !self.is_plain(solids, hip, depth) {
+            self.refine(solids, hip, depth);
+        }
+        // What the others push free of is no contact at the SCP; planes equal to one that pushes are.
+        let shift = self.shift;
+        self.touches.retain(|t| t.plane.distance + t.plane.normal_w.dot(shift) <= 4.0 * t.tie);
+        self.last = Some(hip.translation + self.shift);
+        depth
+    }
+
+    fn take_projection(&mut self) {
+        self.shift = DVec3::from_array(self.projection.z);
+        for t in &mut self.touches {
+            t.push = 0.0;
+        }
+        for (i, m) in self.projection.active() {
+            self.touches[i].push = m;
+        }
+    }
+
+    /// Whether the SCP is known to touch and to be free without a look around: its planes' features face each other there, and
+    /// all pairs that it could reach were among the constraints.
+    fn is_plain(&self, solids: &Solids, hip: &Pose, depth: f64) -> bool {
+        let way = self.shift.length();
+        if self.projection.contradictions > 0 || way > SCP_MARGIN || way > 2.0 * depth {
+            return false;
+        }
+        let mut active = self.touches.iter().filter(|t| t.push > 0.0);
+        if let (Some(one), None) = (active.next(), active.next()) {
+            // The foot on the nearest plane of a pair that is penetrated lies on its C-face.
+            return one.plane.distance < 0.0;
+        }
+        let placed = Placed::new(&Pose::new(hip.translation + self.shift, hip.rotation));
+        self.touches.iter().filter(|t| t.push > 0.0).all(|t| {
+            let (a, b) = (solids.part(t.part as usize), solids.piece(t.piece as usize));
+            let there = CFace { distance: 0.0, ..t.plane };
+            facing_point(a, b, &placed, &there, FREED).is_some()
+        })
+    }
+
+    /// Projection on the planes near the hand. Leaves planes in `touches`, multipliers in `projection`.
+    fn project(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
+        self.touches.clear();
+        self.rows.clear();
+        let deepest = pairs.iter().map(|p| -p.near.distance).fold(0.0, f64::max);
+        if deepest <= 0.0 {
+            return 0.0;
+        }
+        let mut unfelt = 0;
+        for s in pairs {
+            // Free pairs stay as constraints as far as the SCP may be pushed into them.
+            if s.near.distance > 2.0 * deepest {
+                continue;
+            }
+            if solids.is_felt(s.part as usize, s.piece as usize, hip, placed, &s.near) {
+                self.touch(solids, s.part, s.piece, s.near);
+            } else if s.near.distance < 0.0 {
+                unfelt += 1;
+            }
+        }
+        self.projection.solve(&self.rows);
+        if unfelt > 0 {
+            self.add_unfelt(solids, pairs, hip, placed);
+        }
+        self.touches.iter().map(|t| -t.plane.distance).fold(0.0, f64::max)
+    }
+
+    /// A pair whose nearest plane is a seam needs a felt plane of its own only where the others do not free it anyway: one
+    /// plane with `f >= 0` at the SCP, felt or not, proves freedom.
+    fn add_unfelt(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) {
+        for s in pairs.iter().filter(|s| s.near.distance < 0.0) {
+            let (part, piece) = (s.part as usize, s.piece as usize);
+            let shift = DVec3::from_array(self.projection.z);
+            let freed = |c: &CFace| c.distance + c.normal_w.dot(shift) >= -FREED;
+            if freed(&s.near) || solids.is_felt(part, piece, hip, placed, &s.near) {
+                continue;
+            }
+            if let Some(plane) = solids.felt_plane(part, piece, hip, placed, &s.near) {
+                // An equal plane adds nothing to the force, but its contacts belong to the region.
+                let again = !freed(&plane);
+                self.touch(solids, s.part, s.piece, plane);
+                if again {
+                    self.projection.solve(&self.rows);
+                }
+            }
+        }
+    }
+
+    fn touch(&mut self, solids: &Solids, part: u32, piece: u32, plane: CFace) {
+        let tie = 2.0 * solids.part(part as usize).size() * TIED;
+        self.touches.push(Touch { part, piece, plane, first: 0, end: 0, tie, push: 0.0 });
+        self.rows.push(row(&plane));
+    }
+
+    /// The nearest touching configuration that a few starts lead to: the projection itself, the last SCP, and the foot on each
+    /// pair's plane alone. If none does, the deepest pair's foot: the parts are wedged at this orientation.
+    fn refine(&mut self, solids: &Solids, hip: &Pose, depth: f64) {
+        let mut starts = [DVec3::ZERO; STARTS];
+        let mut count = 0;
+        let last = self.last.map(|p| p - hip.translation);
+        let foot = |t: &Touch| t.plane.normal_w * -t.plane.distance;
+        for start in
+            last.into_iter().chain(self.touches.iter().filter(|t| t.plane.distance < 0.0).map(foot)).take(STARTS)
+        {
+            starts[count] = start;
+            count += 1;
+        }
+        let deepest = self.touches.iter().min_by(|p, q| p.plane.distance.total_cmp(&q.plane.distance)).copied();
+        self.best.clear();
+        let mut least = f64::INFINITY;
+        if self.settle(solids, hip, false) {
+            self.keep(&mut least);
+        }
+        if least > FAR * depth {
+            for start in &starts[..count] {
+                self.touches.clear();
+                self.rows.clear();
+                self.shift = *start;
+                if self.settle(solids, hip, true) {
+                    self.keep(&mut least);
+                }
+            }
+        }
+        if least == f64::INFINITY {
+            self.best.extend(deepest.map(|t| Touch { push: -t.plane.distance, ..t }));
+        }
+        std::mem::swap(&mut self.touches, &mut self.best);
+        self.shift = self.touches.iter().map(|t| t.plane.normal_w * t.push).sum();
+    }
+
+    fn keep(&mut self, least: &mut f64) {
+        if self.shift.length() < *least {
+            *least = self.shift.length();
+            std::mem::swap(&mut self.touches, &mut self.best);
+        }
+    }
+
+    /// Takes the planes anew at the SCP until they stay. With `fresh`, from the planes around the present SCP alone. True
+    /// if the SCP penetrates nothing.
+    fn settle(&mut self, solids: &Solids, hip: &Pose, fresh: bool) -> bool {
+        let mut free = false;
+        for round in 0..ROUNDS {
+            let there = Pose::new(hip.translation + self.shift, hip.rotation);
+            let (penetrates, changed) = self.look_around(solids, &there, fresh && round == 0);
+            free = !penetrates;
+            if !changed {
+                break;
+            }
+            self.projection.solve(&self.rows);
+            self.take_projection();
+        }
+        free
+    }
+
+    /// Replaces the planes of pairs that penetrate at the SCP's pose, and of pairs that hold it without touching it. Returns
+    /// whether anything penetrates and whether any plane was replaced.
+    fn look_around(&mut self, solids: &Solids, there: &Pose, all: bool) -> (bool, bool) {
+        self.around.step(there);
+        let placed = Placed::new(there);
+        let (mut penetrates, mut changed) = (false, all);
+        for i in 0..self.touches.len() {
+            let t = &self.touches[i];
+            let seen = |s: &Sensed| (s.part, s.piece) == (t.part, t.piece);
+            if t.push > 0.0 && !self.around.pairs.iter().any(seen) {
+                self.rows[i].offset = f64::NEG_INFINITY;
+                changed = true;
+            }
+        }
+        for k in 0..self.around.pairs.len() {
+            let s = self.around.pairs[k];
+            let inside = s.near.distance < -FREED;
+            let known = self.touches.iter().position(|t| (t.part, t.piece) == (s.part, s.piece));
+            let loose = s.near.distance > FREED && known.is_some_and(|i| self.touches[i].push > 0.0);
+            penetrates |= inside;
+            if !(inside || loose || all && known.is_none()) {
+                continue;
+            }
+            let (part, piece) = (s.part as usize, s.piece as usize);
+            let felt = solids.is_felt(part, piece, there, &placed, &s.near);
+            let plane = if felt { Some(s.near) } else { solids.felt_plane(part, piece, there, &placed, &s.near) };
+            let plane = plane.map(|c| CFace { distance: c.distance - c.normal_w.dot(self.shift), ..c });
+            match (known, plane) {
+                (Some(i), Some(plane)) => {
+                    changed |=
+                        self.touches[i].plane.contact != plane.contact || self.rows[i].offset == f64::NEG_INFINITY;
+                    self.touches[i].plane = plane;
+                    self.rows[i] = row(&plane);
+                }
+                (None, Some(plane)) if self.touches.len() < self.touches.capacity() => {
+                    self.touch(solids, s.part, s.piece, plane);
+                    changed = true;
+                }
+                (Some(i), None) if loose => {
+                    self.rows[i].offset = f64::NEG_INFINITY;
+                    changed = true;
+                }
+                _ => {}
+            }
+        }
+        (penetrates, changed)
+    }
+}
+
+fn row(plane: &CFace) -> Row<3> {
+    Row { normal: plane.normal_w.to_array(), offset: -plane.distance, equality: false }
+}
