@@ -15,6 +15,9 @@ const ROUNDS: usize = 4;
 const ROUNDS_FAST: usize = 16;
 /// Steps below this (metres at the body's reach) are applied to the contacts seen, without looking again.
 const SMALL: f64 = 1e-8;
+/// Steps on the contacts seen once they are small, at most, and the size below which they end (metres at the body's reach).
+const POLISH: usize = 3;
+const VANISHING: f64 = 1e-13;
 /// Largest turn of one linearised step, radians.
 const TURN: f64 = 0.05;
 
@@ -157,9 +160,9 @@ impl Proxy {
                 self.pose = self.pose.moved(step.dp, step.dtheta);
             }
             if way * scale <= SMALL {
-                // Gaps follow to first order.
-                self.view.shift(&step, &self.pose);
+                self.view.shift(solids, &step, &self.pose);
                 self.stale += way * scale;
+                self.polish(solids, hip, &metric, &drag, gains, way * scale);
                 break;
             }
             self.look(solids);
@@ -177,6 +180,28 @@ impl Proxy {
             self.back_off(solids, &safe);
         }
         jumped
+    }
+
+    /// Further steps on the contacts seen, which follow to first order, until the steps vanish: the linearised program turns
+    /// the forces a little with every step, and what is left undone acts like friction.
+    fn polish(&mut self, solids: &Solids, hip: &Pose, metric: &Metric, drag: &Wrench, gains: &Gains, first: f64) {
+        let mut last = first;
+        for _ in 0..POLISH {
+            if last <= VANISHING || self.stale > SMALL || self.pose == *hip {
+                return;
+            }
+            let goal = self.goal(hip, drag, gains);
+            let step = self.solve(metric, &goal);
+            let way = step.way(self.view.lever);
+            // Steps that do not shrink lead nowhere.
+            if !(way < 0.5 * last) {
+                return;
+            }
+            self.pose = self.pose.moved(step.dp, step.dtheta);
+            self.view.shift(solids, &step, &self.pose);
+            self.stale += way;
+            last = way;
+        }
     }
 
     /// Elastic pull of the coupling on the hand: force (N) and torque (N.m), and its energy (J).

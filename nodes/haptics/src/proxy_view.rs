@@ -154,16 +154,24 @@ impl View {
     }
 
     /// Moves the contacts along with a small step to `pose`, to first order.
-    pub fn shift(&mut self, step: &Step, pose: &Pose) {
+    pub fn shift(&mut self, solids: &Solids, step: &Step, pose: &Pose) {
         let mut deepest = f64::INFINITY;
-        for p in &mut self.points {
+        let mut pairs = self.pairs.iter();
+        let mut pair = pairs.next();
+        for (k, p) in self.points.iter_mut().enumerate() {
+            while pair.is_some_and(|q| k >= q.end) {
+                pair = pairs.next();
+            }
             let motion = step.dp + step.dtheta.cross(p.point_w - pose.translation);
             p.gap += p.normal_w.dot(motion);
             match p.contact {
                 BasicContact::TypeA { .. } => p.normal_w += step.dtheta.cross(p.normal_w),
                 BasicContact::TypeB { .. } => p.point_w += motion - p.normal_w * p.normal_w.dot(motion),
-                // Between the two: its error is of the order of the step, which is below a hundredth of a micrometre.
-                BasicContact::TypeC { .. } => {}
+                BasicContact::TypeC { edge_a, edge_b } => {
+                    let Some(q) = pair else { continue };
+                    let (a, b) = (solids.part(q.part as usize), solids.piece(q.piece as usize));
+                    p.follow_crossing(pose.rotation * a.edge_direction(edge_a), b.edge_direction(edge_b), motion);
+                }
             }
             deepest = deepest.min(p.gap);
         }

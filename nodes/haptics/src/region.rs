@@ -18,6 +18,21 @@ pub(crate) struct RegionPoint {
     pub span_w: DVec3,
 }
 
+impl RegionPoint {
+    /// A crossing of edges (unit directions, axes of W) whose place on A has moved by `motion`: the place slides along B's edge,
+    /// the normal stays across both. One that has the face's normal keeps it.
+    pub fn follow_crossing(&mut self, along_a: DVec3, along_b: DVec3, motion: DVec3) {
+        let n = along_a.cross(along_b);
+        let length = n.length();
+        let lean = n.dot(self.normal_w);
+        if length <= PARALLEL_EDGES || lean.abs() < 0.9999 * length {
+            return;
+        }
+        self.point_w += along_b * (motion.cross(along_a).dot(n) / -(length * length));
+        self.normal_w = n * (lean.signum() / length);
+    }
+}
+
 /// The pose of A in the form the geometry wants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed {

@@ -48,14 +48,10 @@ fn closed_loops_return_nothing_without_friction() {
         pose(11.0 + 0.4 * c, 3.0 * d, 2.0 + 0.3 * d, 0.02 * c, 0.03 * d, 0.1 * c)
     };
     let gains = Gains { law: LawKind::Proxy, proxy_speed: f64::INFINITY, ..Gains::default() };
-    // The trapezoid rule errs by h^2: extrapolate from two step lengths (Richardson).
-    let (coarse, _) = work(&w, &gains, &in_contact, 20_000);
-    let (fine, size) = work(&w, &gains, &in_contact, 40_000);
-    println!("trapezoid rule: {coarse:e} and {fine:e} J");
-    let sum = (4.0 * fine - coarse) / 3.0;
+    // The trapezoid rule errs by h^2 within a contact, and a little where contacts come and go: fine steps.
+    let (sum, size) = work(&w, &gains, &in_contact, 160_000);
     println!("proxy: {sum:e} J of {size:e} J moved");
-    // What is left is the proxy's own convergence: it is always a loss, never a gain.
-    assert!(sum <= 1e-9 * size && sum >= -1e-6 * size, "{sum:e} of {size:e}");
+    assert!(sum.abs() <= 1e-9 * size, "{sum:e} of {size:e}");
     // Translation only: the piecewise linear force of the single contact makes the trapezoid rule exact.
     let sliding =
         |s: f64| pose(3.0 * (tau * s).cos(), 3.0 * (tau * s).sin(), 2.0 + 0.5 * (tau * s).sin(), 0.3, 0.2, 0.1);
@@ -63,8 +59,7 @@ fn closed_loops_return_nothing_without_friction() {
         let gains = Gains { law, ..gains };
         let (sum, size) = work(&w, &gains, &sliding, 4000);
         println!("{law:?}, sliding: {sum:e} J of {size:e} J moved");
-        let loss = if law == LawKind::Proxy { 1e-8 } else { 1e-9 };
-        assert!(sum <= 1e-9 * size && sum >= -loss * size, "{law:?}: {sum:e} of {size:e}");
+        assert!(sum.abs() <= 1e-9 * size, "{law:?}: {sum:e} of {size:e}");
     }
 }
 
