@@ -1,48 +1,34 @@
-//! The audit: a search over all directions for a plane that is nearer than the tracked one, by branch and bound.
+//! The audit: is any plane of the C-obstacle nearer to `x` than the tracked one, or does one prove freedom?
 //!
-//! For a triangle of directions `m_i` and any point `v` of the C-obstacle, every plane of the C-obstacle whose normal
-//! lies in the triangle has `f <= max_i m_i.(x - v)` as long as that is negative: so a triangle is done with when one
-//! `v` (or a mixture of those known: a 3 x 3 matrix game) keeps the bound below the target. Else it is split at the
-//! normal of the plane through its three support points, as EPA does, or across its longest edge.
+//! A polytope of points of the C-obstacle is grown around `x` under the tracked C-face, which is a part of it, until
+//! none of its facets is nearer than that face, or until a supporting plane is found that is.
+//!
+//! Why that proves the depth `e`. The polytope's surface is closed: every directed edge is met by its reverse, and
+//! growing keeps this. Every facet has `x` on its inner side at a positive distance, so the solid angles under which
+//! `x` sees the facets are all positive and add up to a whole number of spheres, at least one: every ray from `x` meets
+//! a facet. A point `y` within the distance `e` of `x` is inside all the facets' planes, so the ray through `y` meets
+//! its facet no earlier than at `y`, and `y` lies between points of the C-obstacle, which is convex. So the ball of
+//! radius `e` about `x` is in the C-obstacle, and no plane of it is nearer than `e`. The argument does not need the
+//! polytope to be convex or its facets to be well chosen; rounding enters through each facet's distance alone, of
+//! which a lower bound is used.
 
+use crate::BasicContact;
+use crate::inner_polytope::{InnerPolytope, Stuck, Weak};
 use crate::walk::{Found, Placed};
 use spatial::DVec3;
 
-/// Support evaluations one audit may spend.
-const MAX_SUPPORTS: u32 = 192;
-/// Triangles one audit may hold open.
-const MAX_OPEN: usize = 96;
-/// Directions around the pole.
-const RING: usize = 5;
+/// Most corners that the polygon on top may have; of a face with more, some are taken.
+const TOP_CORNERS: usize = 8;
 
-#[derive(Clone, Copy)]
-struct Corner {
-    m: DVec3,
-    /// `x - v`, with `v` the support point of the C-obstacle along `m`.
-    w: DVec3,
-    /// `-m.w`: how deep `x` is below the supporting plane, metres.
-    depth: f64,
-    a: u32,
-    b: u32,
-}
-
-#[derive(Clone, Copy)]
-struct Triangle {
-    corners: [Corner; 3],
-    at_pole: bool,
-}
-
-const NO_CORNER: Corner = Corner { m: DVec3::ZERO, w: DVec3::ZERO, depth: 0.0, a: 0, b: 0 };
-
-/// Room for the open triangles; made once.
+/// Room for the polytope; made once.
 #[derive(Clone)]
 pub(crate) struct AuditScratch {
-    open: Box<[Triangle; MAX_OPEN]>,
+    polytope: Box<InnerPolytope>,
 }
 
 impl AuditScratch {
     pub(crate) fn new() -> Self {
-        Self { open: Box::new([Triangle { corners: [NO_CORNER; 3], at_pole: false }; MAX_OPEN]) }
+        Self { polytope: Box::new(InnerPolytope::new()) }
     }
 }
 
@@ -64,207 +50,127 @@ pub(crate) enum Verdict {
     Open,
 }
 
-/// Three vectors' matrix game: an upper bound for `f` over the triangle.
-#[inline]
-fn bound(c: &[Corner; 3]) -> f64 {
-    let row = |i: usize| DVec3::new(c[i].m.dot(c[0].w), c[i].m.dot(c[1].w), c[i].m.dot(c[2].w));
-    let rows = [row(0), row(1), row(2)];
-    let pure = rows[0].max(rows[1]).max(rows[2]).min_element();
-    let mix = rows[0].cross(rows[1]) + rows[1].cross(rows[2]) + rows[2].cross(rows[0]);
-    let sum = mix.element_sum();
-    let lambda = mix / sum;
-    if lambda.min_element() >= 0.0 && lambda.is_finite() {
-        // All rows agree there but for rounding: the largest is the safe one.
-        let mixed = rows[0].dot(lambda).max(rows[1].dot(lambda)).max(rows[2].dot(lambda));
-        return pure.min(mixed);
+/// The corners of the C-face of `contact` relative to `x`, counter-clockwise seen from outside; at most `TOP_CORNERS`.
+fn corners(placed: &Placed<'_>, found: &Found, out: &mut [DVec3; TOP_CORNERS]) -> usize {
+    let (a, b) = (placed.a, placed.b);
+    let point = |va: u32, vb: u32| b.points[vb as usize] - placed.r * a.points[va as usize] - placed.x;
+    let pick = |sides: &[crate::body::Side], p: DVec3, out: &mut [DVec3; TOP_CORNERS], at: &dyn Fn(u32) -> DVec3| {
+        let n = sides.len();
+        if n <= TOP_CORNERS {
+            sides.iter().zip(out.iter_mut()).for_each(|(s, o)| *o = at(s.corner));
+            return n;
+        }
+        // Both ends of the side that is nearest, and others evenly around.
+        let beyond = |i: usize| sides[i].out.dot(p) - sides[i].offset;
+        let near = (0..n).max_by(|i, j| beyond(*i).total_cmp(&beyond(*j))).unwrap_or(0);
+        out[0] = at(sides[near].corner);
+        for (k, o) in out.iter_mut().enumerate().skip(1) {
+            *o = at(sides[(near + 1 + (k - 1) * (n - 1) / (TOP_CORNERS - 1)) % n].corner);
+        }
+        TOP_CORNERS
+    };
+    match found.face.contact {
+        BasicContact::TypeB { vertex_a: v, face_b: f } => {
+            let p = placed.x + placed.r * a.points[v.index()];
+            pick(b.sides(f.0), p, out, &|w| point(v.0, w))
+        }
+        BasicContact::TypeA { face_a: f, vertex_b: v } => {
+            let p = placed.rt * (b.points[v.index()] - placed.x);
+            let n = pick(a.sides(f.0), p, out, &|w| point(w, v.0));
+            // Turned over: A's outward is the C-face's inward.
+            out[..n].reverse();
+            n
+        }
+        BasicContact::TypeC { edge_a, edge_b } => {
+            let (va, vb) = (a.rods[edge_a.index()].vertices, b.rods[edge_b.index()].vertices);
+            let ring = [point(va[0], vb[0]), point(va[0], vb[1]), point(va[1], vb[1]), point(va[1], vb[0])];
+            out[..4].copy_from_slice(&ring);
+            if (ring[1] - ring[0]).cross(ring[2] - ring[1]).dot(found.face.normal_w) < 0.0 {
+                out[..4].reverse();
+            }
+            4
+        }
     }
-    pure
 }
 
-/// The angle from Near's normal to the corners of a ring outside of which the ball that the C-obstacle holds about
-/// `c_B - R c_A` keeps every plane farther than Near's by the slack returned; none if the ring would be too wide.
-fn ball_cap(placed: &Placed<'_>, near: &Found, slack: f64) -> Option<(f64, f64)> {
-    let e = -near.face.distance;
-    let to_ball = placed.b.center - placed.r * placed.a.center - placed.x;
-    let (away, rho) = (to_ball.length(), placed.a.inner_radius + placed.b.inner_radius);
-    let spare = slack.min(0.1 * (rho - e));
-    let cos = (rho - e - spare) / away;
-    if !(spare > 0.0 && cos < 1.0) {
-        return None;
-    }
-    let lean = (-near.face.normal_w.dot(to_ball) / away).clamp(-1.0, 1.0).acos();
-    let cap = lean + cos.acos();
-    // The sides of a ring of five cut inside the circle through its corners.
-    (cap < 1.0).then(|| (1.02 * (cap.tan() / (std::f64::consts::PI / RING as f64).cos()).atan(), spare))
-}
-
-struct Audit<'a, 'p> {
-    placed: &'a Placed<'p>,
-    target: f64,
-    tolerance: f64,
-    supports: u32,
+/// A point of the C-obstacle, as seen from `x`, and its distance along the direction it was asked for.
+struct Support {
+    point: DVec3,
+    depth: f64,
     a: u32,
     b: u32,
 }
 
-impl Audit<'_, '_> {
-    /// The support at `m`; `Err` if its plane is nearer than the target.
-    fn corner(&mut self, m: DVec3, planes: &mut u32) -> Result<Corner, Verdict> {
-        self.supports += 1;
-        *planes += 1;
-        let p = self.placed;
-        self.b = p.b.lowest(-m, self.b, planes);
-        self.a = p.a.lowest(p.rt * m, self.a, planes);
-        let w = p.x + p.r * p.a.points[self.a as usize] - p.b.points[self.b as usize];
-        let depth = -m.dot(w);
-        if depth < self.target - self.tolerance {
-            return Err(Verdict::Nearer { direction: m, a: self.a, b: self.b });
-        }
-        Ok(Corner { m, w, depth, a: self.a, b: self.b })
-    }
+fn support(placed: &Placed<'_>, m: DVec3, planes: &mut u32) -> Support {
+    *planes += 1;
+    let b = placed.b.lowest_of_all(-m, planes);
+    let a = placed.a.lowest_of_all(placed.rt * m, planes);
+    let point = placed.b.points[b as usize] - placed.r * placed.a.points[a as usize] - placed.x;
+    Support { point, depth: m.dot(point), a, b }
 }
 
-/// Looks for a plane nearer to `x` than `near`'s, starting from the two vertices given.
-pub(crate) fn audit(
-    placed: &Placed<'_>,
-    near: &Found,
-    start: (u32, u32),
-    scratch: &mut AuditScratch,
-    planes: &mut u32,
-) -> Verdict {
-    match search(placed, near, start, scratch, planes) {
-        Ok(v) | Err(v) => v,
-    }
-}
-
-fn search(
-    placed: &Placed<'_>,
-    near: &Found,
-    start: (u32, u32),
-    scratch: &mut AuditScratch,
-    planes: &mut u32,
-) -> Result<Verdict, Verdict> {
-    let target = -near.face.distance;
-    let size = placed.a.radius + placed.b.radius;
-    let mut audit = Audit { placed, target, tolerance: 4e-13 * size + placed.eps, supports: 0, a: start.0, b: start.1 };
+/// Looks for a plane nearer to `x` than `near`'s. `x` must be inside Near's plane.
+pub(crate) fn audit(placed: &Placed<'_>, near: &Found, scratch: &mut AuditScratch, planes: &mut u32) -> Verdict {
     let n = near.face.normal_w;
-    let (u, v) = n.any_orthonormal_pair();
-    // Leave to the C-face's extent what it proves by itself, with a fifth to spare for the motion to come.
-    let reach = if target > 0.0 { 0.8 * near.inside / target } else { 3.0 };
-    let covered = reach > 0.05;
-    let beyond = ball_cap(placed, near, 0.02 * size);
-    let tan_half_cap = match beyond {
-        _ if covered => reach.min(1.5),
-        // The fan around the pole reaches to where the balls take over.
-        Some((cap, _)) => (0.5 * cap).tan(),
-        None => 0.2,
-    };
-    let ring_angle = 2.0 * tan_half_cap.atan();
-    let (cos, sin) = {
-        let t2 = tan_half_cap * tan_half_cap;
-        ((1.0 - t2) / (1.0 + t2), 2.0 * tan_half_cap / (1.0 + t2))
-    };
-    let azimuth = |i: usize, shift: f64| {
-        let angle = std::f64::consts::TAU * (i as f64 + shift) / RING as f64;
-        u * angle.cos() + v * angle.sin()
-    };
-    let pole = audit.corner(n, planes)?;
-    let mut ring = [NO_CORNER; RING];
-    for (i, c) in ring.iter_mut().enumerate() {
-        *c = audit.corner((n * cos + azimuth(i, 0.0) * sin).normalize(), planes)?;
-    }
-    let mut open = 0;
-    let stack = &mut scratch.open;
-    let mut push = |corners: [Corner; 3], at_pole: bool| {
-        stack[open] = Triangle { corners, at_pole };
-        open += 1;
-    };
-    if !covered {
-        for i in 0..RING {
-            push([pole, ring[i], ring[(i + 1) % RING]], true);
+    let e = -near.face.distance;
+    let size = placed.a.radius + placed.b.radius;
+    let tolerance = 4e-13 * size + placed.eps;
+    let polytope = &mut *scratch.polytope;
+    let mut top = [DVec3::ZERO; TOP_CORNERS];
+    let count = corners(placed, near, &mut top);
+    polytope.start(&top[..count], support(placed, -n, planes).point, 2.0 * size);
+    // At the surface itself a positive distance is asked for: the proof needs it.
+    let enough = (e - 1.5 * tolerance).max(0.5 * e);
+    let plane = |polytope: &mut InnerPolytope, weak: &Weak, m: DVec3, planes: &mut u32| {
+        let s = support(placed, m, planes);
+        if s.depth < e - tolerance {
+            return Err(Verdict::Nearer { direction: m, a: s.a, b: s.b });
         }
-    }
-    let strip = |inner: &[Corner; RING], outer: &[Corner; RING], push: &mut dyn FnMut([Corner; 3], bool)| {
-        for i in 0..RING {
-            let j = (i + 1) % RING;
-            push([inner[i], inner[j], outer[i]], false);
-            push([outer[i], inner[j], outer[j]], false);
+        if !(weak.normal.dot(s.point) - weak.offset > 0.25 * tolerance) {
+            return Ok(false);
+        }
+        match polytope.grow(weak, s.point) {
+            Ok(()) => Ok(true),
+            Err(Stuck) => Err(Verdict::Open),
         }
     };
-    let mut slack = if covered { f64::INFINITY } else { -1.0 };
-    if let Some((cap, spare)) = beyond {
-        // The inscribed balls answer for everything outside this cap.
-        if cap > ring_angle {
-            let mut outer = [NO_CORNER; RING];
-            for (i, c) in outer.iter_mut().enumerate() {
-                *c = audit.corner((n * cap.cos() + azimuth(i, 0.5) * cap.sin()).normalize(), planes)?;
+    while let Some(weak) = polytope.weakest(enough) {
+        // Below an edge of the C-face, the steepest plane that is still far enough tells most.
+        if let Some(m) = weak.hangs_on.and_then(|ends| steepest(ends, n, e)) {
+            match plane(polytope, &weak, m, planes) {
+                Ok(true) => continue,
+                Ok(false) => {}
+                Err(v) => return v,
             }
-            strip(&ring, &outer, &mut push);
         }
-        slack = slack.min(spare);
-    } else {
-        let mut last = ring;
-        if cos > -0.2 {
-            // A second ring half way to the antipode.
-            let middle = 0.5 * (ring_angle + std::f64::consts::PI);
-            let mut outer = [NO_CORNER; RING];
-            for (i, c) in outer.iter_mut().enumerate() {
-                *c = audit.corner((n * middle.cos() + azimuth(i, 0.5) * middle.sin()).normalize(), planes)?;
-            }
-            strip(&ring, &outer, &mut push);
-            last = outer;
-        }
-        let antipode = audit.corner(-n, planes)?;
-        for i in 0..RING {
-            push([last[i], last[(i + 1) % RING], antipode], false);
+        match plane(polytope, &weak, weak.normal, planes) {
+            Ok(true) => {}
+            Ok(false) => return Verdict::Open,
+            Err(v) => return v,
         }
     }
-    while open > 0 {
-        open -= 1;
-        let t = stack[open];
-        let spare = -audit.target - bound(&t.corners);
-        let gap = t.corners.iter().map(|c| c.depth - audit.target).fold(f64::INFINITY, f64::min);
-        // Be content with a third of what the corners leave: proofs that last, without splitting for ever.
-        if spare >= (0.3 * gap).min(0.1 * size) - audit.tolerance {
-            if !t.at_pole {
-                slack = slack.min(spare);
-            }
-            continue;
-        }
-        if audit.supports >= MAX_SUPPORTS || open + 3 > MAX_OPEN {
-            return Err(Verdict::Open);
-        }
-        let [p, q, r] = t.corners;
-        (audit.a, audit.b) = (p.a, p.b);
-        let flat = (q.w - p.w).cross(r.w - p.w);
-        let flat = if flat.dot(p.m + q.m + r.m) < 0.0 { -flat } else { flat };
-        let length = flat.length();
-        let inside = |m: DVec3| {
-            let total = p.m.cross(q.m).dot(r.m);
-            let part = [p.m.cross(q.m).dot(m), q.m.cross(r.m).dot(m), r.m.cross(p.m).dot(m)];
-            part.iter().all(|d| d * total.signum() > 1e-3 * total.abs())
-        };
-        let candidate = flat / length;
-        if length > 1e-9 * size * size && inside(candidate) {
-            let c = audit.corner(candidate, planes)?;
-            for corners in [[p, q, c], [q, r, c], [r, p, c]] {
-                stack[open] = Triangle { corners, at_pole: t.at_pole };
-                open += 1;
-            }
-        } else {
-            let lengths = [p.m.dot(q.m), q.m.dot(r.m), r.m.dot(p.m)];
-            let [p, q, r] = if lengths[0] <= lengths[1] && lengths[0] <= lengths[2] {
-                [p, q, r]
-            } else if lengths[1] <= lengths[2] {
-                [q, r, p]
-            } else {
-                [r, p, q]
-            };
-            let c = audit.corner((p.m + q.m).normalize(), planes)?;
-            stack[open] = Triangle { corners: [p, c, r], at_pole: t.at_pole };
-            stack[open + 1] = Triangle { corners: [c, q, r], at_pole: t.at_pole };
-            open += 2;
-        }
+    if !(enough > 0.0) {
+        return Verdict::Open;
     }
-    Ok(Verdict::Proven { tan_half_cap, slack: if covered { slack.max(-1.0) } else { -1.0 } })
+    reach(polytope, near, n, e)
+}
+
+/// The normal of the plane through the edge of the C-face that passes `x` a little farther than the C-face does.
+fn steepest([from, to]: [DVec3; 2], n: DVec3, e: f64) -> Option<DVec3> {
+    let out = (to - from).cross(n).normalize();
+    let t = 0.9 * out.dot(from) / e;
+    (t > 1e-6 && t < 1e6).then(|| (n * (1.0 - t * t) + out * (2.0 * t)) / (1.0 + t * t))
+}
+
+/// How far the proof reaches: outside a cap that is left to the C-face's own extent, the support function's minima
+/// over the directions are at the normals of the polytope's facets, or on the border of the cap.
+fn reach(polytope: &InnerPolytope, near: &Found, n: DVec3, e: f64) -> Verdict {
+    let t = (0.6 * near.inside / e).min(1.5);
+    if !(t > 0.03) {
+        return Verdict::Proven { tan_half_cap: 0.0, slack: -1.0 };
+    }
+    let (cos, sin) = ((1.0 - t * t) / (1.0 + t * t), 2.0 * t / (1.0 + t * t));
+    let border = sin * (near.inside - e * t);
+    let slack = polytope.surface().filter(|(m, _)| m.dot(n) < cos).fold(border, |s, (_, sure)| s.min(sure - e));
+    Verdict::Proven { tan_half_cap: t, slack }
 }

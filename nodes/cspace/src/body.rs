@@ -1,3 +1,4 @@
+use crate::support_table::SupportTable;
 use crate::{EdgeId, FaceId, Polyhedron, VertexId};
 use spatial::DVec3;
 
@@ -19,6 +20,8 @@ pub(crate) struct Side {
     pub edge: u32,
     /// The face across it.
     pub face: u32,
+    /// The edge's first vertex, the face on the left.
+    pub corner: u32,
 }
 
 /// One spoke of a vertex ring.
@@ -59,8 +62,7 @@ pub(crate) struct Body {
     spokes: Vec<Spoke>,
     pub rods: Vec<Rod>,
     pub face_of_vertex: Vec<u32>,
-    pub vertex_of_face: Vec<u32>,
-    pub first_vertex: u32,
+    pub support: SupportTable,
     pub center: DVec3,
     pub radius: f64,
     pub inner_radius: f64,
@@ -88,6 +90,7 @@ impl Body {
                     tan_half: (m - n).length() / (m + n).length().max(1e-300),
                     edge: p.face_edges(f)[i].0,
                     face: p.face_faces(f)[i].0,
+                    corner: ring[i].0,
                 });
             }
             side_start.push(sides.len() as u32);
@@ -118,7 +121,7 @@ impl Body {
             })
             .collect();
         let planes: Vec<_> = p.faces().map(|f: FaceId| (p.face_plane(f).normal, p.face_plane(f).distance)).collect();
-        Self {
+        let mut body = Self {
             points: p.vertices().to_vec(),
             normals_turned: planes.iter().map(|(n, _)| tilt(*n)).collect(),
             planes,
@@ -128,13 +131,21 @@ impl Body {
             spokes,
             rods,
             face_of_vertex,
-            vertex_of_face: p.faces().map(|f| p.face_vertices(f)[0].0).collect(),
-            first_vertex: p.corner_ids().next().map_or(0, |v| v.0),
+            support: SupportTable::EMPTY,
             center: p.center(),
             radius: p.size(),
             inner_radius: p.inner_radius(),
             reach: p.corner_ids().map(|v| p.vertex(v).length()).fold(0.0, f64::max),
-        }
+        };
+        let first = p.corner_ids().next().map_or(0, |v| v.0);
+        body.support = SupportTable::new(p.vertex_count(), first, |d, from| body.lowest(d, from, &mut 0));
+        body
+    }
+
+    /// The vertex lowest along `direction` (own frame), from wherever is near. Counts the vertices it leaves.
+    #[inline]
+    pub(crate) fn lowest_of_all(&self, direction: DVec3, visited: &mut u32) -> u32 {
+        self.lowest(direction, self.support.start(direction), visited)
     }
 
     #[inline]

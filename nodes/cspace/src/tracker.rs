@@ -137,8 +137,8 @@ impl PairState {
     fn seed(&mut self, placed: &Placed<'_>, pose: &Pose, scratch: &mut AuditScratch, planes: &mut u32) -> Found {
         let (a, b) = (placed.a, placed.b);
         let m = (placed.x + placed.r * a.center - b.center).try_normalize().unwrap_or(DVec3::Z);
-        let va = a.lowest(placed.rt * m, a.first_vertex, planes);
-        let vb = b.lowest(-m, b.first_vertex, planes);
+        let va = a.lowest_of_all(placed.rt * m, planes);
+        let vb = b.lowest_of_all(-m, planes);
         let moves = STEP_MOVES + (a.planes.len() + b.planes.len()) as u32;
         let mut near = placed.settle(placed.node_from_direction(m, va, vb), moves, planes);
         self.rival = None;
@@ -147,7 +147,7 @@ impl PairState {
             if near.face.distance > 0.0 {
                 break;
             }
-            match audit(placed, &near, placed.vertices_of(near.face.contact), scratch, planes) {
+            match audit(placed, &near, scratch, planes) {
                 Verdict::Nearer { direction, a, b } => {
                     let found = placed.settle(placed.node_from_direction(direction, a, b), moves, planes);
                     if !(found.face.distance > near.face.distance) {
@@ -199,7 +199,7 @@ impl PairState {
                 proven = true;
                 break;
             }
-            match audit(placed, &best, placed.vertices_of(best.face.contact), scratch, planes) {
+            match audit(placed, &best, scratch, planes) {
                 Verdict::Proven { tan_half_cap, slack } => {
                     self.certificate = Certificate::new(placed, pose, &best, tan_half_cap, slack);
                     proven = true;
