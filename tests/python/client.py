@@ -6,6 +6,7 @@ import threading
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import deserialize_message
 
 from support import PATIENCE, wait_until
 
@@ -47,10 +48,10 @@ class Client:
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)
 
-    def listen(self, kind, topic, profile):
-        """A list that grows with what comes on `topic`."""
+    def listen(self, kind, topic, profile, raw=False):
+        """A list that grows with what comes on `topic`; `raw` keeps bytes, for topics that are faster than Python."""
         heard = []
-        self.node.create_subscription(kind, topic, heard.append, profile)
+        self.node.create_subscription(kind, topic, heard.append, profile, raw=raw)
         return heard
 
     def wait(self, heard, count=1, what="messages"):
@@ -63,6 +64,11 @@ class Client:
         future = client.call_async(request)
         wait_until(future.done, f"answer of {name}")
         return future.result()
+
+
+def messages(heard, kind):
+    """The messages that were kept as bytes."""
+    return [deserialize_message(each, kind) for each in list(heard)]
 
 
 def seconds(stamp):

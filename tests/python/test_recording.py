@@ -1,5 +1,7 @@
 """haptic_recorder and haptic_inspect beside a servo: independent readers open what they wrote, even after a kill."""
 
+import os
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -7,7 +9,7 @@ import time
 import unittest
 from pathlib import Path
 
-from support import BIN, ROOT, TOOLS, enter, node, wait_until
+from support import BIN, ROOT, TOOLS, Process, enter, node, wait_until
 
 SCENE = ROOT / "config/scenes/peg_in_hole/scene.yaml"
 TOPICS = ",".join(f"/haptic_servo/{name}" for name in ("ticks", "pose", "proxy_pose", "wrench", "scene", "configuration"))
@@ -67,6 +69,38 @@ class Recording(unittest.TestCase):
             self.assertGreater(recorded, killed - begun - 1.0, summary.stdout)
             self.assertIn("ticks lost      0", summary.stdout)
         self.assertEqual(servo.end(), 0, servo.text)
+
+    def test_a_full_disk_ends_the_recording_and_leaves_what_was_recorded(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", disk], capture_output=True, text=True)
+        if mounted.returncode != 0:
+            self.skipTest(f"a disk of 1 MB cannot be mounted: {mounted.stderr.strip()}")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        bag = disk / "bag"
+        recorder = self.start("haptic_recorder", output=bag, compression="none")
+        self.start_servo()
+        self.assertEqual(recorder.wait(), 1, recorder.text)
+        for part in ("error: ", str(bag), "No space left", "what was recorded so far is complete"):
+            self.assertIn(part, recorder.lines[-1])
+        verdict = check_bag(bag, "--ticks-at-least", "100")
+        self.assertEqual(verdict.returncode, 0, verdict.stdout + verdict.stderr)
+
+    def test_a_folder_that_may_not_be_written_is_named(self):
+        closed = self.folder / "closed"
+        closed.mkdir(mode=0o555)
+        command = [BIN / "haptic_recorder", "--ros-args", "-p", f"output:={closed / 'bag'}"]
+        if os.geteuid() == 0:
+            # Root may write anywhere, unless it gives that up.
+            command = ["setpriv", "--bounding-set=-dac_override", "--inh-caps=-dac_override", *command]
+            if shutil.which("setpriv") is None:
+                self.skipTest("there is no setpriv to give up root's rights with")
+        recorder = enter(self, Process(*command, cwd=self.folder))
+        self.assertEqual(recorder.wait(), 1, recorder.text)
+        (line,) = recorder.lines
+        for part in ("error: ", str(closed / "bag"), "Permission denied", "choose a folder that you may write to"):
+            self.assertIn(part, line)
+        self.assertEqual(list(closed.iterdir()), [])
 
     def test_the_recording_for_rerun_is_whole(self):
         file = self.folder / "demo.rrd"

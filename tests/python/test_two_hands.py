@@ -6,7 +6,7 @@ from pathlib import Path
 
 import motions
 from client import Client, norm, qos
-from cspace_haptics_msgs.msg import ContactState, SceneDescription, ServoConfiguration
+from cspace_haptics_msgs.msg import ContactState, PrincipalContact, SceneDescription, ServoConfiguration
 from geometry_msgs.msg import WrenchStamped
 from launch_stub import Launch
 from support import enter, wait_until
@@ -45,8 +45,8 @@ class TwoHands(unittest.TestCase):
         graph = client.node
         for name in HANDS:
             for topic in ("haptic_device/pose", "haptic_device/command/wrench", "haptic_servo/remote_wrench"):
-                offers = graph.get_publishers_info_by_topic(f"/{name}/{topic}")
-                self.assertEqual({o.node_namespace for o in offers}, {f"/{name}"}, topic)
+                spaces = lambda: {o.node_namespace for o in graph.get_publishers_info_by_topic(f"/{name}/{topic}")}
+                wait_until(lambda: spaces() == {f"/{name}"}, f"{topic} to be spoken on by the {name} hand alone, not by {spaces()}")
         latched = qos(reliable=True, latched=True, depth=1)
         with Client("late_joiner") as late:
             for name in HANDS:
@@ -55,7 +55,7 @@ class TwoHands(unittest.TestCase):
                 states = late.listen(ContactState, f"/{name}/haptic_servo/contacts", latched)
                 self.assertEqual(late.wait(scenes)[0].name, "corner")
                 self.assertIn(f"stiffness: {HANDS[name][0]}", late.wait(configurations)[0].yaml)
-                self.assertEqual(late.wait(states)[-1].kind, ContactState.KIND_FACE_FACE)
+                self.assertEqual(late.wait(states)[-1].kind, PrincipalContact.KIND_FACE_FACE)
         # One hand lets go: the other does not notice.
         for process in nodes["left"].values():
             self.assertEqual(process.end(), 0, process.text)
