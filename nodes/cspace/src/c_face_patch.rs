@@ -1,6 +1,6 @@
 use crate::c_face_polygon::{Facet, Sum};
 use crate::walk::Placed;
-use crate::{BasicContact, CFacePolygon, Tracker};
+use crate::{BasicContact, CFacePolygon, Polyhedron, Tracker};
 use spatial::Pose;
 use std::collections::{BTreeSet, VecDeque};
 
@@ -25,7 +25,7 @@ impl Tracker {
         let mut seen = BTreeSet::from([near]);
         let mut queue = VecDeque::from([near]);
         while let Some(node) = queue.pop_front() {
-            let (vertex_a, vertex_b) = placed.vertices_of(node);
+            let (vertex_a, vertex_b) = supporting_vertices(self.moving(), self.fixed(), node);
             let facet = sum.facet_at(placed.plane(node).normal_w, vertex_a, vertex_b);
             // Between parallel edges the graph has nodes of no area, which tie coplanar C-faces together.
             if !known.contains(&facet.supports()) && sum.spans_face(&facet) {
@@ -42,5 +42,14 @@ impl Tracker {
             });
         }
         sum.polygons_of(facets)
+    }
+}
+
+/// A vertex of A and one of B that support the two bodies along the node's normal.
+fn supporting_vertices(a: &Polyhedron, b: &Polyhedron, node: BasicContact) -> (u32, u32) {
+    match node {
+        BasicContact::TypeA { face_a, vertex_b } => (a.face_vertices(face_a)[0].0, vertex_b.0),
+        BasicContact::TypeB { vertex_a, face_b } => (vertex_a.0, b.face_vertices(face_b)[0].0),
+        BasicContact::TypeC { edge_a, edge_b } => (a.edge(edge_a).vertices[0].0, b.edge(edge_b).vertices[0].0),
     }
 }
