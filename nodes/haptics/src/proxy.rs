@@ -17,7 +17,7 @@ const ROUNDS_FAST: usize = 16;
 const SMALL: f64 = 1e-8;
 /// Steps on the contacts seen once they are small, at most, and the size below which they end (metres at the body's reach).
 const POLISH: usize = 3;
-const VANISHING: f64 = 1e-13;
+const VANISHING: f64 = 1e-11;
 /// Largest turn of one linearised step, radians.
 const TURN: f64 = 0.05;
 

@@ -47,6 +47,8 @@ pub(crate) struct View {
     pub lever: f64,
     clipper: Clipper,
     touching: Vec<bool>,
+    /// For each pair the plane last felt where Near is a seam.
+    hints: Vec<Option<BasicContact>>,
     /// Pairs listed by their faces alone at this look.
     by_face: Vec<bool>,
     places: Vec<DVec3>,
@@ -78,6 +80,7 @@ impl View {
             lever,
             clipper: Clipper::for_world(world),
             touching: vec![false; pairs],
+            hints: vec![None; pairs],
             by_face: Vec::with_capacity(pairs),
             places: Vec::with_capacity(Self::ROOM),
             hull: Vec::with_capacity(Self::ROOM),
@@ -88,6 +91,7 @@ impl View {
     pub fn reset(&mut self) {
         self.sense.reset();
         self.touching.fill(false);
+        self.hints.fill(None);
     }
 
     /// Looks around from `pose`.
@@ -130,7 +134,11 @@ impl View {
             if s.near.distance > self.reach || self.by_face[k] || solids.is_felt(part, piece, pose, &placed, &s.near) {
                 continue;
             }
-            let Some(plane) = solids.felt_plane(part, piece, pose, &placed, &s.near) else { continue };
+            let Some(plane) =
+                solids.felt_plane(part, piece, pose, &placed, &s.near, &mut self.hints[part * self.pieces + piece])
+            else {
+                continue;
+            };
             // A plane far inside belongs to the other side of the solid: the pieces around push out first.
             if plane.distance >= -BESIDE || felt_penetration <= PENETRATION && s.near.distance < -PENETRATION {
                 self.list(solids, &s, &plane, true, &placed);

@@ -5,7 +5,7 @@ use crate::region::{Placed, facing_point};
 use crate::renderer::SCP_MARGIN;
 use crate::sense::{Sense, Sensed};
 use crate::solid::Solids;
-use cspace::CFace;
+use cspace::{BasicContact, CFace};
 use spatial::{DVec3, Pose};
 
 /// Contacts whose depths differ by less than this part of the moving part's size take place together; half as much again keeps
@@ -48,6 +48,9 @@ pub(crate) struct Scp {
     rows: Vec<Row<3>>,
     projection: Projection<3>,
     shift: DVec3,
+    /// For each pair the plane last felt where Near is a seam.
+    hints: Vec<Option<BasicContact>>,
+    pieces: usize,
     /// The tracker that looks around from the SCP.
     around: Sense,
     /// The last SCP.
@@ -65,6 +68,8 @@ impl Scp {
             rows: Vec::with_capacity(pairs),
             projection: Projection::new(),
             shift: DVec3::ZERO,
+            hints: vec![None; pairs],
+            pieces: world.fixed.len(),
             around: Sense::new(world.clone(), BESIDE * size),
             last: None,
         }
@@ -72,6 +77,7 @@ impl Scp {
 
     pub fn reset(&mut self) {
         self.last = None;
+        self.hints.fill(None);
         self.around.reset();
     }
 
@@ -171,7 +177,9 @@ impl Scp {
             if freed(&s.near) || solids.is_felt(part, piece, hip, placed, &s.near) {
                 continue;
             }
-            if let Some(plane) = solids.felt_plane(part, piece, hip, placed, &s.near) {
+            if let Some(plane) =
+                solids.felt_plane(part, piece, hip, placed, &s.near, &mut self.hints[part * self.pieces + piece])
+            {
                 // An equal plane adds nothing to the force, but its contacts belong to the region.
                 let again = !freed(&plane);
                 self.touch(solids, s.part, s.piece, plane);
@@ -273,7 +281,11 @@ impl Scp {
             }
             let (part, piece) = (s.part as usize, s.piece as usize);
             let felt = solids.is_felt(part, piece, there, &placed, &s.near);
-            let plane = if felt { Some(s.near) } else { solids.felt_plane(part, piece, there, &placed, &s.near) };
+            let plane = if felt {
+                Some(s.near)
+            } else {
+                solids.felt_plane(part, piece, there, &placed, &s.near, &mut self.hints[part * self.pieces + piece])
+            };
             let plane = plane.map(|c| CFace { distance: c.distance - c.normal_w.dot(self.shift), ..c });
             match (known, plane) {
                 (Some(i), Some(plane)) => {

@@ -97,10 +97,47 @@ impl Solids {
     }
 
     /// Where `near` is not felt: the felt C-face with the largest signed distance among the face contacts and, around the
-    /// best of them and around `near`, the edge contacts. None if nothing is felt.
-    pub fn felt_plane(&self, part: usize, piece: usize, pose: &Pose, placed: &Placed, near: &CFace) -> Option<CFace> {
+    /// best of them and around `near`, the edge contacts. None if nothing is felt. `hint` is the pair's last answer: what
+    /// cannot better it is not looked at.
+    pub fn felt_plane(
+        &self,
+        part: usize,
+        piece: usize,
+        pose: &Pose,
+        placed: &Placed,
+        near: &CFace,
+        hint: &mut Option<BasicContact>,
+    ) -> Option<CFace> {
         let (a, b) = (self.part(part), self.piece(piece));
-        let mut best: Option<CFace> = None;
+        let last = hint
+            .filter(|c| is_applicable(*c, a, b, pose.rotation))
+            .map(|c| CFace::at(c, a, b, pose))
+            .filter(|c| self.is_felt_plane(part, piece, pose, placed, c));
+        let best = self.felt_from(part, piece, pose, placed, near, last);
+        *hint = best.map(|c| c.contact);
+        best
+    }
+
+    /// See [`Solids::felt_plane`]; `best` is known already.
+    fn felt_from(
+        &self,
+        part: usize,
+        piece: usize,
+        pose: &Pose,
+        placed: &Placed,
+        near: &CFace,
+        mut best: Option<CFace>,
+    ) -> Option<CFace> {
+        // No plane is nearer than Near's: a tie cannot be bettered.
+        let tie = near.distance - 1e-12;
+        if best.is_some_and(|f| f.distance >= tie) {
+            return best;
+        }
+        let (a, b) = (self.part(part), self.piece(piece));
+        let center_a = pose.transform_point(a.center());
+        // A body holds a ball: its support lies at least as far behind a plane.
+        let (ball_a, ball_b) = (a.inner_radius(), b.inner_radius());
+        let known = best.map_or(f64::NEG_INFINITY, |f| f.distance);
         let mut offer = |contact: BasicContact, normal_w: DVec3, distance: f64| {
             let face = CFace { contact, normal_w, distance };
             if best.is_none_or(|o| distance > o.distance) && self.is_felt_plane(part, piece, pose, placed, &face) {
@@ -110,6 +147,9 @@ impl Solids {
         let into_a = placed.r.transpose();
         for face_b in b.faces().filter(|f| !self.is_internal_b(piece, *f)) {
             let plane = b.face_plane(face_b);
+            if plane.signed_distance(center_a) - ball_a <= known {
+                continue;
+            }
             let vertex_a = a.support(-(into_a * plane.normal));
             let distance = plane.signed_distance(placed.point(a.vertex(vertex_a)));
             offer(BasicContact::TypeB { vertex_a, face_b }, plane.normal, distance);
@@ -117,12 +157,14 @@ impl Solids {
         for face_a in a.faces().filter(|f| !self.is_internal_a(part, *f)) {
             let plane = a.face_plane(face_a);
             let normal_w = -(placed.r * plane.normal);
+            if normal_w.dot(placed.x - b.center()) - plane.distance - ball_b <= known {
+                continue;
+            }
             let vertex_b = b.support(normal_w);
             let distance = normal_w.dot(placed.x - b.vertex(vertex_b)) - plane.distance;
             offer(BasicContact::TypeA { face_a, vertex_b }, normal_w, distance);
         }
-        // No plane is nearer than Near's: a tie cannot be bettered.
-        if best.is_some_and(|f| f.distance >= near.distance - 1e-12) {
+        if best.is_some_and(|f| f.distance >= tie) {
             return best;
         }
         // Edge contacts: walk from the best face contact, and from Near's own features, over adjacent edges.
