@@ -49,8 +49,8 @@ pub(crate) struct View {
     touching: Vec<bool>,
     /// For each pair the plane last felt where Near is a seam.
     hints: Vec<Option<BasicContact>>,
-    /// Pairs listed by their faces alone at this look.
-    by_face: Vec<bool>,
+    /// Pairs whose nearest plane at this look is a seam.
+    unfelt: Vec<bool>,
     places: Vec<DVec3>,
     hull: Vec<DVec3>,
     pieces: usize,
@@ -81,7 +81,7 @@ impl View {
             clipper: Clipper::for_world(world),
             touching: vec![false; pairs],
             hints: vec![None; pairs],
-            by_face: Vec::with_capacity(pairs),
+            unfelt: Vec::with_capacity(pairs),
             places: Vec::with_capacity(Self::ROOM),
             hull: Vec::with_capacity(Self::ROOM),
             pieces: world.fixed.len(),
@@ -107,8 +107,8 @@ impl View {
         }
         let mut felt_penetration = f64::NEG_INFINITY;
         let mut unfelt = false;
-        self.by_face.clear();
-        self.by_face.resize(self.sense.pairs.len(), false);
+        self.unfelt.clear();
+        self.unfelt.resize(self.sense.pairs.len(), false);
         for k in 0..self.sense.pairs.len() {
             let s = self.sense.pairs[k];
             if s.near.distance > self.reach {
@@ -120,8 +120,8 @@ impl View {
             } else if s.near.distance > -PENETRATION && self.leans_on_open_face(solids, &s, &placed) {
                 // Only the place is a seam's: the faces there, and so the region, are the solid's own.
                 self.list(solids, &s, &s.near, false, &placed);
-                self.by_face[k] = true;
             } else {
+                self.unfelt[k] = true;
                 unfelt = true;
             }
         }
@@ -131,7 +131,7 @@ impl View {
         for k in 0..self.sense.pairs.len() {
             let s = self.sense.pairs[k];
             let (part, piece) = (s.part as usize, s.piece as usize);
-            if s.near.distance > self.reach || self.by_face[k] || solids.is_felt(part, piece, pose, &placed, &s.near) {
+            if !self.unfelt[k] {
                 continue;
             }
             let Some(plane) =

@@ -46,6 +46,8 @@ pub(crate) struct Scp {
     pub touches: Vec<Touch>,
     best: Vec<Touch>,
     rows: Vec<Row<3>>,
+    /// Penetrating pairs whose nearest plane is a seam.
+    unfelt: Vec<Sensed>,
     projection: Projection<3>,
     shift: DVec3,
     /// For each pair the plane last felt where Near is a seam.
@@ -66,6 +68,7 @@ impl Scp {
             touches: Vec::with_capacity(pairs),
             best: Vec::with_capacity(pairs),
             rows: Vec::with_capacity(pairs),
+            unfelt: Vec::with_capacity(pairs),
             projection: Projection::new(),
             shift: DVec3::ZERO,
             hints: vec![None; pairs],
@@ -148,7 +151,7 @@ impl Scp {
         if deepest <= 0.0 {
             return 0.0;
         }
-        let mut unfelt = 0;
+        self.unfelt.clear();
         for s in pairs {
             // Free pairs stay as constraints as far as the SCP may be pushed into them.
             if s.near.distance > 2.0 * deepest {
@@ -157,24 +160,23 @@ impl Scp {
             if solids.is_felt(s.part as usize, s.piece as usize, hip, placed, &s.near) {
                 self.touch(solids, s.part, s.piece, s.near);
             } else if s.near.distance < 0.0 {
-                unfelt += 1;
+                self.unfelt.push(*s);
             }
         }
         self.projection.solve(&self.rows);
-        if unfelt > 0 {
-            self.add_unfelt(solids, pairs, hip, placed);
-        }
+        self.add_unfelt(solids, hip, placed);
         self.touches.iter().map(|t| -t.plane.distance).fold(0.0, f64::max)
     }
 
     /// A pair whose nearest plane is a seam needs a felt plane of its own only where the others do not free it anyway: one
     /// plane with `f >= 0` at the SCP, felt or not, proves freedom.
-    fn add_unfelt(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) {
-        for s in pairs.iter().filter(|s| s.near.distance < 0.0) {
+    fn add_unfelt(&mut self, solids: &Solids, hip: &Pose, placed: &Placed) {
+        for k in 0..self.unfelt.len() {
+            let s = self.unfelt[k];
             let (part, piece) = (s.part as usize, s.piece as usize);
             let shift = DVec3::from_array(self.projection.z);
             let freed = |c: &CFace| c.distance + c.normal_w.dot(shift) >= -FREED;
-            if freed(&s.near) || solids.is_felt(part, piece, hip, placed, &s.near) {
+            if freed(&s.near) {
                 continue;
             }
             if let Some(plane) =

@@ -1,6 +1,8 @@
 //! Bodies and worlds for the law tests.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+pub mod random;
+
 use cspace::{FixedPart, Polyhedron, World};
 use spatial::{DVec3, Pose};
 use std::sync::Arc;
