@@ -16,6 +16,8 @@ pub(crate) struct Side {
     pub offset: f64,
     /// Tangent of half the angle between this face's normal and the neighbour's.
     pub tan_half: f64,
+    /// `1 / (1 + tan_half)`.
+    pub tan_share: f64,
     /// The edge.
     pub edge: u32,
     /// The face across it.
@@ -27,7 +29,7 @@ pub(crate) struct Side {
 /// One spoke of a vertex ring.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spoke {
-    /// Neighbour minus vertex, turned by the tie break.
+    /// Unit direction to the neighbour, turned by the tie break.
     pub to: DVec3,
     /// The edge.
     pub edge: u32,
@@ -84,10 +86,12 @@ impl Body {
                 let (a, b) = (p.vertex(ring[i]), p.vertex(ring[(i + 1) % ring.len()]));
                 let out = (b - a).cross(n).normalize();
                 let m = p.face_plane(p.face_faces(f)[i]).normal;
+                let tan_half = (m - n).length() / (m + n).length().max(1e-300);
                 sides.push(Side {
                     out,
                     offset: out.dot(a).max(out.dot(b)),
-                    tan_half: (m - n).length() / (m + n).length().max(1e-300),
+                    tan_half,
+                    tan_share: 1.0 / (1.0 + tan_half),
                     edge: p.face_edges(f)[i].0,
                     face: p.face_faces(f)[i].0,
                     corner: ring[i].0,
@@ -99,7 +103,7 @@ impl Body {
         let mut face_of_vertex = Vec::with_capacity(p.vertex_count());
         for v in (0..p.vertex_count() as u32).map(VertexId) {
             for (e, w) in p.vertex_edges(v).iter().zip(p.vertex_vertices(v)) {
-                spokes.push(Spoke { to: tilt(p.vertex(*w) - p.vertex(v)), edge: e.0, vertex: w.0 });
+                spokes.push(Spoke { to: tilt((p.vertex(*w) - p.vertex(v)).normalize()), edge: e.0, vertex: w.0 });
             }
             spoke_start.push(spokes.len() as u32);
             face_of_vertex.push(p.vertex_faces(v).first().map_or(0, |f| f.0));
@@ -160,24 +164,35 @@ impl Body {
         &self.spokes[self.spoke_start[v] as usize..self.spoke_start[v + 1] as usize]
     }
 
+    /// A vertex of a face.
+    pub(crate) fn vertex_of_face(&self, face: u32) -> u32 {
+        self.sides(face)[0].corner
+    }
+
     /// The vertex lowest along `direction` (own frame), downhill from `from`. Counts the vertices it leaves.
     #[inline]
-    pub(crate) fn lowest(&self, direction: DVec3, mut from: u32, visited: &mut u32) -> u32 {
+    pub(crate) fn lowest(&self, direction: DVec3, from: u32, visited: &mut u32) -> u32 {
+        self.lowest_and_lead(direction, from, visited).0
+    }
+
+    /// The same, and the sine of the angle by which the flattest edge at that vertex rises along the direction.
+    #[inline]
+    pub(crate) fn lowest_and_lead(&self, direction: DVec3, mut from: u32, visited: &mut u32) -> (u32, f64) {
         // Strictly downhill on a finite set: it ends; the bound is for not-a-number.
         for _ in 0..=self.points.len() {
-            let mut best = (0.0, from);
+            let mut best = (f64::INFINITY, from);
             for s in self.spokes(from) {
                 let g = direction.dot(s.to);
                 if g < best.0 {
                     best = (g, s.vertex);
                 }
             }
-            if best.1 == from {
-                break;
+            if !(best.0 < 0.0) {
+                return (from, best.0);
             }
             from = best.1;
             *visited += 1;
         }
-        from
+        (from, 0.0)
     }
 }

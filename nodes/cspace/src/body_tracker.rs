@@ -1,6 +1,7 @@
 use crate::audit::AuditScratch;
 use crate::bvh::{Aabb, Bvh};
 use crate::tracker::PairState;
+use crate::walk::At;
 use crate::{Body, Tracked, World};
 use spatial::{DVec3, Pose};
 use std::sync::Arc;
@@ -38,7 +39,7 @@ struct Part {
     odometer: f64,
     /// Odometer at which the view is out of date.
     view_until: f64,
-    last: Option<Pose>,
+    last: Option<At>,
 }
 
 /// Tracks a manipulated body of several convex parts against many obstacle pieces.
@@ -126,13 +127,14 @@ impl BodyTracker {
         let Self { parts, pieces, tree, margin, scratch, active, overflow, .. } = self;
         *overflow = 0;
         for (index, part) in parts.iter_mut().enumerate() {
-            part.look(tree, pose, *margin, overflow);
+            let at = At::new(&part.body, pose);
+            part.look(tree, &at, *margin, overflow);
             for seen in &mut part.seen {
                 if part.odometer < seen.rest_until {
                     continue;
                 }
                 let fresh = !seen.state.is_seeded();
-                let mut tracked = seen.state.step(&part.body, &pieces[seen.piece as usize], scratch, pose);
+                let mut tracked = seen.state.step(&part.body, &pieces[seen.piece as usize], scratch, &at);
                 tracked.reseeded &= !(fresh && tracked.is_free());
                 seen.rest_until = part.odometer + (tracked.distance - *margin);
                 if tracked.distance <= *margin {
@@ -146,13 +148,12 @@ impl BodyTracker {
 
 impl Part {
     /// Counts the way, and looks around when the view is out of date.
-    fn look(&mut self, tree: &Bvh, pose: &Pose, margin: f64, overflow: &mut u32) {
-        let center = pose.transform_point(self.body.center);
+    fn look(&mut self, tree: &Bvh, at: &At, margin: f64, overflow: &mut u32) {
         let moved = self.last.map_or(f64::INFINITY, |last| {
-            let turn = 2.1 * self.body.radius * (pose.rotation - last.rotation).length();
-            (center - last.transform_point(self.body.center)).length() + turn
+            let turn = 2.1 * self.body.radius * (at.pose.rotation - last.pose.rotation).length();
+            (at.center - last.center).length() + turn
         });
-        self.last = Some(*pose);
+        self.last = Some(*at);
         if moved.is_finite() {
             self.odometer += moved;
         }
@@ -165,7 +166,7 @@ impl Part {
         self.view_until = self.odometer + room;
         std::mem::swap(&mut self.seen, &mut self.old);
         self.seen.clear();
-        tree_into(tree, center, r + margin + room, &mut self.seen, overflow);
+        tree_into(tree, at.center, r + margin + room, &mut self.seen, overflow);
         self.seen.sort_unstable_by_key(|s| s.piece);
         // Pairs that were in view keep their state; both lists are sorted.
         let mut old = self.old.iter().peekable();

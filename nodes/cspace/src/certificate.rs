@@ -27,7 +27,7 @@ impl Certificate {
 
     pub(crate) fn new(placed: &Placed<'_>, pose: &Pose, near: &Found, tan_half_cap: f64, slack: f64) -> Self {
         Self {
-            center_a: pose.translation + placed.r * placed.a.center,
+            center_a: placed.center,
             rotation: pose.rotation,
             normal: near.face.normal_w,
             depth: -near.face.distance,
@@ -36,35 +36,43 @@ impl Certificate {
         }
     }
 
-    /// Whether the proof still holds: no plane moves by more than `|dc| + r dtheta` along its normal, with `c` the
-    /// centre of A and `r` its radius.
+    /// Whether the proof still holds, and goes on doing so within `room` ([`Found::room`]): no plane moves by more than `|dc| + r dtheta` along its normal, with `c` the centre of A and `r` its radius.
     #[inline]
-    pub(crate) fn holds(&self, placed: &Placed<'_>, pose: &Pose, near: &Found) -> bool {
-        let (e, n) = (-near.face.distance, near.face.normal_w);
+    pub(crate) fn holds(&self, placed: &Placed<'_>, pose: &Pose, near: &Found, room: f64) -> bool {
+        let (e, s) = (room - near.face.distance, near.inside - room);
+        let n = near.face.normal_w;
         if self.slack < 0.0 {
             return false;
         }
         let q = if self.rotation.dot(pose.rotation) < 0.0 { -self.rotation } else { self.rotation };
         // |q - q0| = 2 sin(theta / 4); 2.1 |q - q0| >= theta up to 1.5 rad.
         let chord = (pose.rotation - q).length();
-        let motion =
-            (pose.translation + placed.r * placed.a.center - self.center_a).length() + 2.1 * chord * placed.a.radius;
+        let motion = (placed.center - self.center_a).length() + 2.1 * chord * placed.a.radius + room;
         let turn = ((n - self.normal).length_squared() / (n + self.normal).length_squared().max(1e-300)).sqrt();
+        // And by so much more within the room: tan(t/2) < 0.55 t for the turns that pass.
+        let more = 0.55 * near.normal_turn * room / near.lever;
+        let turn = (turn + more) / (1.0 - turn * more);
         let cap = self.tan_half_cap;
         chord < 0.7
             && motion + (e - self.depth).max(0.0) <= self.slack
+            && more < 0.25
+            && turn >= 0.0
             && cap * turn < 1.0
-            && near.inside * (1.0 - cap * turn) >= e * (cap + turn)
+            && s * (1.0 - cap * turn) >= e * (cap + turn)
     }
 }
 
 /// The same proof from the bodies' inscribed balls alone, in closed form: the hull of the disc about the SCP in the
-/// C-face and of the ball that the C-obstacle holds about `c_B - R c_A` contains the ball about `x`.
+/// C-face and of the ball that the C-obstacle holds about `c_B - R c_A` contains the ball about `x`, and goes on doing
+/// so within `room` ([`Found::room`]): seen from `x` and Near's normal, the disc shrinks and the depth grows by that at
+/// most, and the ball's centre moves as A's does and by its distance times the normal's turn.
 #[inline]
-pub(crate) fn inscribed_ball_proves(placed: &Placed<'_>, near: &Found) -> bool {
-    let (e, n, s) = (-near.face.distance, near.face.normal_w, near.inside);
-    let rho = placed.a.inner_radius + placed.b.inner_radius;
-    let to_ball = placed.b.center - placed.r * placed.a.center - placed.x;
+pub(crate) fn inscribed_ball_proves(placed: &Placed<'_>, near: &Found, room: f64) -> bool {
+    let (e, s) = (room - near.face.distance, near.inside - room);
+    let n = near.face.normal_w;
+    let to_ball = placed.b.center - placed.center;
+    let shake = if room > 0.0 { room * (near.normal_turn * to_ball.length() / near.lever).max(1.0) } else { 0.0 };
+    let rho = placed.a.inner_radius + placed.b.inner_radius - shake;
     let down = -n.dot(to_ball); // depth of the ball's centre below x
     let lateral2 = (to_ball.length_squared() - down * down).max(0.0);
     if !(s > 0.0 && down > 0.0 && rho > e) {

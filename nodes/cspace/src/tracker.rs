@@ -1,6 +1,6 @@
 use crate::audit::{AuditScratch, Verdict, audit};
 use crate::certificate::{Certificate, inscribed_ball_proves};
-use crate::walk::{Found, Placed};
+use crate::walk::{At, Found, Placed};
 use crate::{BasicContact, Body, CFace, Polyhedron};
 use spatial::{DVec3, Pose};
 use std::sync::Arc;
@@ -11,6 +11,9 @@ const STEP_MOVES: u32 = 512;
 const MAX_SUBSTEPS: u32 = 8;
 /// Nearer planes that one step follows up.
 const MAX_RIVALS: u32 = 6;
+
+/// Square of an angle turned, divided by that of the change of the quaternion: at most 2.1^2 up to 1.5 radians.
+const CHORD2: f64 = 4.5;
 
 /// What a step of the tracker says.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,8 +50,15 @@ pub(crate) struct PairState {
     /// The globally nearest C-face when it is not the tracked one.
     rival: Option<BasicContact>,
     certificate: Certificate,
+    /// The pose at the last full step.
     last: Pose,
     last_center: DVec3,
+    /// Square of the way that A may go from there while Near stays what it is, metres squared ([`Found::room`]).
+    room2: f64,
+    /// Square of what an angle counts for on that way, metres squared, with the factor from chord to angle.
+    lever2: f64,
+    /// Whether the depth is known to be the global one within that room.
+    proven: bool,
     seeded: bool,
 }
 
@@ -59,11 +69,15 @@ impl PairState {
         certificate: Certificate::NONE,
         last: Pose::IDENTITY,
         last_center: DVec3::ZERO,
+        room2: 0.0,
+        lever2: 0.0,
+        proven: false,
         seeded: false,
     };
 
     pub(crate) fn forget(&mut self) {
         self.seeded = false;
+        self.room2 = 0.0;
     }
 
     pub(crate) fn is_seeded(&self) -> bool {
@@ -76,18 +90,37 @@ impl PairState {
 
     /// One step: see [`Tracker::step`].
     #[inline]
-    pub(crate) fn step(&mut self, a: &Body, b: &Body, scratch: &mut AuditScratch, pose: &Pose) -> Tracked {
-        let placed = Placed::new(a, b, pose);
+    pub(crate) fn step(&mut self, a: &Body, b: &Body, scratch: &mut AuditScratch, at: &At) -> Tracked {
+        let travel2 = (at.center - self.last_center).length_squared();
+        // (u + v)^2 <= 2 u^2 + 2 v^2.
+        let chord2 = (at.pose.rotation - self.last.rotation).length_squared();
+        if 2.0 * (travel2 + self.lever2 * chord2) < self.room2
+            && let Some(near) = Placed::steady_plane(a, b, at, self.near)
+            && (self.proven || near.distance > 0.0)
+        {
+            let distance = near.distance;
+            return Tracked {
+                near,
+                depth: (-distance).max(0.0),
+                distance,
+                divergent: false,
+                reseeded: false,
+                planes: 1,
+            };
+        }
+        self.full_step(a, b, scratch, at, travel2 + CHORD2 * a.radius * a.radius * chord2)
+    }
+
+    /// A step that looks at Near's sides, and farther where they do not answer. `moved2`: the squares
+    /// of travel and turn since the last such step, added, metres squared.
+    fn full_step(&mut self, a: &Body, b: &Body, scratch: &mut AuditScratch, at: &At, moved2: f64) -> Tracked {
+        let placed = Placed::at(a, b, at);
+        let pose = &at.pose;
+        let limit = 0.5 * (a.inner_radius + b.inner_radius);
         let mut planes = 0;
         let mut reseeded = false;
-        if self.seeded {
-            let travel2 = (placed.r * a.center + placed.x - self.last_center).length_squared();
-            let chord2 = (pose.rotation - self.last.rotation).length_squared();
-            let limit = 0.5 * (a.inner_radius + b.inner_radius);
-            // The angle turned is at most 2.1 times the chord for the turns that matter here.
-            if travel2 + 4.5 * a.radius * a.radius * chord2 > limit * limit {
-                reseeded = self.follow_jump(a, b, pose, limit, &mut planes);
-            }
+        if self.seeded && moved2 > limit * limit {
+            reseeded = self.follow_jump(a, b, pose, limit, &mut planes);
         }
         let mut near = if self.seeded {
             placed.settle(self.near, STEP_MOVES, &mut planes)
@@ -100,16 +133,30 @@ impl PairState {
             near = self.seed(&placed, pose, scratch, &mut planes);
         }
         let mut divergent = false;
+        let mut room = near.room.min(0.25 * limit).max(0.0);
+        self.proven = false;
         if near.face.distance > 0.0 {
             self.rival = None;
-        } else if self.rival.is_some()
-            || !(inscribed_ball_proves(&placed, &near) || self.certificate.holds(&placed, pose, &near))
-        {
-            (near, divergent) = self.examine(&placed, pose, near, scratch, &mut reseeded, &mut planes);
+        } else {
+            if self.rival.is_none() {
+                // The proof may reach as far as the walk's answer does, less far, or for this pose alone.
+                let rooms: &[f64] = if room > 0.0 { &[1.0, 0.125, 0.0] } else { &[0.0] };
+                let proof = rooms.iter().map(|part| part * room).find(|r| {
+                    inscribed_ball_proves(&placed, &near, *r) || self.certificate.holds(&placed, pose, &near, *r)
+                });
+                self.proven = proof.is_some();
+                room = proof.unwrap_or(0.0);
+            }
+            if !self.proven {
+                room = 0.0;
+                (near, divergent) = self.examine(&placed, pose, near, scratch, &mut reseeded, &mut planes);
+            }
         }
         self.near = near.face.contact;
+        self.room2 = room * room;
+        self.lever2 = CHORD2 * near.lever * near.lever;
         self.last = *pose;
-        self.last_center = placed.r * a.center + placed.x;
+        self.last_center = at.center;
         let distance = near.face.distance;
         Tracked { near: near.face, depth: (-distance).max(0.0), distance, divergent, reseeded, planes }
     }
@@ -136,7 +183,7 @@ impl PairState {
     #[cold]
     fn seed(&mut self, placed: &Placed<'_>, pose: &Pose, scratch: &mut AuditScratch, planes: &mut u32) -> Found {
         let (a, b) = (placed.a, placed.b);
-        let m = (placed.x + placed.r * a.center - b.center).try_normalize().unwrap_or(DVec3::Z);
+        let m = (placed.center - b.center).try_normalize().unwrap_or(DVec3::Z);
         let va = a.lowest_of_all(placed.rt * m, planes);
         let vb = b.lowest_of_all(-m, planes);
         let moves = STEP_MOVES + (a.planes.len() + b.planes.len()) as u32;
@@ -195,7 +242,7 @@ impl PairState {
                 self.rival = None;
                 return (best, false);
             }
-            if inscribed_ball_proves(placed, &best) || self.certificate.holds(placed, pose, &best) {
+            if inscribed_ball_proves(placed, &best, 0.0) || self.certificate.holds(placed, pose, &best, 0.0) {
                 proven = true;
                 break;
             }
@@ -272,7 +319,7 @@ impl Tracker {
     #[inline]
     pub fn step(&mut self, pose: &Pose) -> Tracked {
         let (a, b) = &*self.bodies;
-        self.state.step(a, b, &mut self.scratch, pose)
+        self.state.step(a, b, &mut self.scratch, &At::new(a, pose))
     }
 
     /// The local subgraph at the last pose (paper, section II.A): Near and the C-faces that share an edge with it.

@@ -12,6 +12,24 @@ use crate::c_face::{type_a, type_b, type_c};
 use crate::{BasicContact, Body, CFace};
 use spatial::{DMat3, DVec3, Pose};
 
+/// A pose of A, and what every pair with A needs of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct At {
+    pub pose: Pose,
+    /// `w_from_a`.
+    pub r: DMat3,
+    /// A's centre in W, metres.
+    pub center: DVec3,
+}
+
+impl At {
+    #[inline]
+    pub(crate) fn new(a: &Body, pose: &Pose) -> Self {
+        let r = pose.rotation_matrix();
+        Self { pose: *pose, r, center: r * a.center + pose.translation }
+    }
+}
+
 /// Two bodies at a pose of A.
 #[derive(Clone, Copy)]
 pub(crate) struct Placed<'a> {
@@ -22,6 +40,8 @@ pub(crate) struct Placed<'a> {
     pub r: DMat3,
     /// `a_from_w`.
     pub rt: DMat3,
+    /// A's centre in W, metres.
+    pub center: DVec3,
     /// Length below which ties are kept as they are, metres.
     pub eps: f64,
 }
@@ -34,6 +54,30 @@ pub(crate) struct Found {
     pub inside: f64,
     /// Whether no neighbour is better; false if the bound was reached first.
     pub settled: bool,
+    /// While A's centre has moved and A has turned by so little that `|dc| + lever dtheta` stays below this, the node
+    /// is applicable and no neighbour becomes better, and neither `inside` nor the distance changes by more, metres;
+    /// `<= 0` if nothing is known.
+    pub room: f64,
+    /// What an angle that A turns by counts for, metres; at least A's radius.
+    pub lever: f64,
+    /// Bound of the angle by which the normal turns when A turns by a small angle, divided by that angle.
+    pub normal_turn: f64,
+}
+
+impl Found {
+    /// A node that a walk could not make sure of.
+    fn lost(face: CFace) -> Self {
+        Self { face, inside: f64::NEG_INFINITY, settled: false, room: 0.0, lever: f64::INFINITY, normal_turn: 0.0 }
+    }
+}
+
+/// What the sides of a C-face say: see [`Found`].
+struct Sides {
+    distance: f64,
+    inside: f64,
+    room: f64,
+    lever: f64,
+    normal_turn: f64,
 }
 
 /// The best way on from a node.
@@ -72,85 +116,98 @@ struct Crossing {
     b_at_a1: usize,
     /// Direction of A's edge with the tie break: its side of parallel edges is never a matter of rounding.
     dir_a: DVec3,
+    /// Angle that A may turn before the arcs cease to cross; 0 where a tie break decides.
+    steady: f64,
 }
 
 impl<'a> Placed<'a> {
     #[inline]
     pub(crate) fn new(a: &'a Body, b: &'a Body, pose: &Pose) -> Self {
-        let r = pose.rotation_matrix();
+        Self::at(a, b, &At::new(a, pose))
+    }
+
+    #[inline]
+    pub(crate) fn at(a: &'a Body, b: &'a Body, at: &At) -> Self {
         let eps = 2e-13 * (a.radius + b.radius) + 1e-15 * (a.reach + b.reach);
-        Self { a, b, x: pose.translation, r, rt: r.transpose(), eps }
+        Self { a, b, x: at.pose.translation, r: at.r, rt: at.r.transpose(), center: at.center, eps }
     }
 
     /// Climbs from `node` to a C-face none of whose neighbours has a larger signed distance, in at most `limit` moves.
     /// `planes` counts the planes looked at.
     #[inline]
     pub(crate) fn settle(&self, node: BasicContact, limit: u32, planes: &mut u32) -> Found {
-        let mut node = self.repair(node, planes);
+        // Whether edges still cross comes out with their plane.
+        let (mut node, mut steady) =
+            if matches!(node, BasicContact::TypeC { .. }) { (node, 0.0) } else { self.repair(node, planes) };
         let mut moves = 0;
         loop {
             *planes += 1;
             let mut best = Best { key: 0.0, node: None };
-            let (normal_w, distance, inside) = match node {
+            let (normal_w, sides) = match node {
                 BasicContact::TypeB { vertex_a: v, face_b: f } => {
                     let p = self.x + self.r * self.a.points[v.index()];
-                    let (distance, inside) = self.vertex_face::<false>(v.0, f.0, p, &mut best, planes);
-                    (self.b.planes[f.index()].0, distance, inside)
+                    let sides = self.vertex_face::<false>(v.0, f.0, p, &mut best, planes);
+                    (self.b.planes[f.index()].0, sides)
                 }
                 BasicContact::TypeA { face_a: f, vertex_b: v } => {
                     let q = self.rt * (self.b.points[v.index()] - self.x);
-                    let (distance, inside) = self.vertex_face::<true>(v.0, f.0, q, &mut best, planes);
-                    (-(self.r * self.a.planes[f.index()].0), distance, inside)
+                    let sides = self.vertex_face::<true>(v.0, f.0, q, &mut best, planes);
+                    (-(self.r * self.a.planes[f.index()].0), sides)
                 }
                 BasicContact::TypeC { edge_a, edge_b } => match self.crossing(edge_a.0, edge_b.0) {
                     Some(c) => {
-                        let (distance, inside) = self.edge_edge(edge_a.0, edge_b.0, &c, &mut best, planes);
-                        (c.normal, distance, inside)
+                        steady = c.steady;
+                        (c.normal, self.edge_edge(edge_a.0, edge_b.0, &c, &mut best, planes))
                     }
                     None => {
                         moves += 1;
-                        node = self.repair(node, planes);
+                        (node, steady) = self.repair(node, planes);
                         if moves < limit {
                             continue;
                         }
                         // Out of moves: what repair gave is applicable and its plane is true.
-                        return Found { face: self.plane(node), inside: f64::NEG_INFINITY, settled: false };
+                        return Found::lost(self.plane(node));
                     }
                 },
             };
             moves += 1;
             match best.node {
-                Some(next) if moves < limit => node = next,
+                Some(next) if moves < limit => (node, steady) = (next, 0.0),
                 next => {
-                    let face = CFace { contact: node, normal_w, distance };
-                    return Found { face, inside, settled: next.is_none() };
+                    let face = CFace { contact: node, normal_w, distance: sides.distance };
+                    let Sides { inside, lever, normal_turn, .. } = sides;
+                    let room = sides.room.min(steady * lever);
+                    return Found { face, inside, settled: next.is_none(), room, lever, normal_turn };
                 }
             }
         }
     }
 
-    /// A node that can take place at this orientation, near `node`.
+    /// A node that can take place at this orientation, near `node`, and the angle that A may turn before it cannot
+    /// (for vertex and face).
     #[inline]
-    pub(crate) fn repair(&self, node: BasicContact, planes: &mut u32) -> BasicContact {
+    pub(crate) fn repair(&self, node: BasicContact, planes: &mut u32) -> (BasicContact, f64) {
         match node {
             BasicContact::TypeB { vertex_a, face_b } => {
                 let m = self.rt * self.b.normals_turned[face_b.index()];
-                type_b(self.a.lowest(m, vertex_a.0, planes), face_b.0)
+                let (v, steady) = self.a.lowest_and_lead(m, vertex_a.0, planes);
+                (type_b(v, face_b.0), steady)
             }
             BasicContact::TypeA { face_a, vertex_b } => {
                 let m = self.r * self.a.normals_turned[face_a.index()];
-                type_a(face_a.0, self.b.lowest(m, vertex_b.0, planes))
+                let (v, steady) = self.b.lowest_and_lead(m, vertex_b.0, planes);
+                (type_a(face_a.0, v), steady)
             }
             BasicContact::TypeC { edge_a, edge_b } => {
                 if self.crossing(edge_a.0, edge_b.0).is_some() {
-                    return node;
+                    return (node, 0.0);
                 }
                 let (rod_a, rod_b) = (&self.a.rods[edge_a.index()], &self.b.rods[edge_b.index()]);
                 let u = self.r * rod_a.dir_turned;
                 let off = rod_b.faces.map(|f| self.b.planes[f as usize].0.dot(u).abs());
                 let f = rod_b.faces[usize::from(off[1] < off[0])];
                 let m = self.rt * self.b.normals_turned[f as usize];
-                type_b(self.a.lowest(m, rod_a.vertices[0], planes), f)
+                (type_b(self.a.lowest(m, rod_a.vertices[0], planes), f), 0.0)
             }
         }
     }
@@ -159,12 +216,12 @@ impl<'a> Placed<'a> {
     pub(crate) fn holds(&self, node: BasicContact) -> bool {
         match node {
             BasicContact::TypeC { edge_a, edge_b } => self.crossing(edge_a.0, edge_b.0).is_some(),
-            _ => self.repair(node, &mut 0) == node,
+            _ => self.repair(node, &mut 0).0 == node,
         }
     }
 
     /// A vertex of one body over a face of the other: type B, or type A if `OF_A`. `p` is the vertex in the face's
-    /// frame. Returns the signed distance and how far inside the sides the projection lies.
+    /// frame.
     #[inline]
     fn vertex_face<const OF_A: bool>(
         &self,
@@ -173,23 +230,29 @@ impl<'a> Placed<'a> {
         p: DVec3,
         best: &mut Best,
         planes: &mut u32,
-    ) -> (f64, f64) {
+    ) -> Sides {
         let body = if OF_A { self.a } else { self.b };
         let (n, d) = body.planes[face as usize];
         let distance = n.dot(p) - d;
         let (e, under) = (-distance, (-distance).max(0.0));
         let mut nearest = f64::NEG_INFINITY;
+        let mut room = f64::INFINITY;
         for side in body.sides(face) {
             let s = side.out.dot(p) - side.offset;
             nearest = nearest.max(s);
             // The neighbour is at most the whole dihedral angle away: most sides need no look at it.
-            if s + under * side.tan_half > self.eps {
+            let lead = -(s + under * side.tan_half);
+            // Both `s` and the depth change by what the vertex moves in the face's frame.
+            room = room.min(lead * side.tan_share);
+            if lead < -self.eps {
                 *planes += 1;
                 let (next, m) = self.across_face_side::<OF_A>(vertex, face, side.edge, side.face);
                 best.offer(s, e, body.normals_turned[face as usize], m, self.eps, next);
             }
         }
-        (distance, -nearest)
+        // A vertex of A moves as A does; a vertex of B, seen from A, may lie on a longer lever by its distance.
+        let (lever, normal_turn) = if OF_A { (self.a.radius + distance.abs(), 1.0) } else { (self.a.radius, 0.0) };
+        Sides { distance, inside: -nearest, room, lever, normal_turn }
     }
 
     /// The C-face across one side of a type-B (type-A if `OF_A`) C-face, and its normal in the face's frame.
@@ -211,11 +274,12 @@ impl<'a> Placed<'a> {
     #[inline]
     fn crossing(&self, edge_a: u32, edge_b: u32) -> Option<Crossing> {
         let (rod_a, rod_b) = (&self.a.rods[edge_a as usize], &self.b.rods[edge_b as usize]);
-        let n = rod_b.faces.map(|f| self.b.planes[f as usize].0);
+        let n = [self.b.planes[rod_b.faces[0] as usize].0, self.b.planes[rod_b.faces[1] as usize].0];
         let turned = self.r * rod_a.dir_turned;
-        let p = n.map(|n| n.dot(turned));
-        let arc_a = rod_a.faces.map(|f| -(self.r * self.a.normals_turned[f as usize]));
-        let q = arc_a.map(|m| m.dot(rod_b.dir));
+        let p = [n[0].dot(turned), n[1].dot(turned)];
+        let arc = |f: u32| -(self.r * self.a.normals_turned[f as usize]);
+        let arc_a = [arc(rod_a.faces[0]), arc(rod_a.faces[1])];
+        let q = [arc_a[0].dot(rod_b.dir), arc_a[1].dot(rod_b.dir)];
         if !(p[0] * p[1] < 0.0 && q[0] * q[1] < 0.0) {
             return None;
         }
@@ -225,18 +289,18 @@ impl<'a> Placed<'a> {
             return None;
         }
         // The tie break decides, the true directions give the plane: but not where they are parallel.
-        let straight = self.r * rod_a.dir;
-        let p_true = n.map(|n| n.dot(straight));
-        if p_true[0] * p_true[1] < 0.0 && (p_true[0] - p_true[1]).abs() > 1e-9 {
-            normal = n[0] * p_true[1].abs() + n[1] * p_true[0].abs();
+        let mut steady = 0.0;
+        if let Some(straight) = true_normal(n, self.r * rod_a.dir) {
+            normal = straight;
+            steady = p[0].abs().min(p[1].abs()).min(q[0].abs()).min(q[1].abs());
         }
         let a_at_b1 = usize::from(q[1] > 0.0);
         let b_at_a1 = usize::from(p[1] < 0.0);
-        Some(Crossing { normal: normal.normalize(), arc_a, a_at_b1, b_at_a1, dir_a: turned })
+        Some(Crossing { normal: normal.normalize(), arc_a, a_at_b1, b_at_a1, dir_a: turned, steady })
     }
 
     #[inline]
-    fn edge_edge(&self, edge_a: u32, edge_b: u32, c: &Crossing, best: &mut Best, planes: &mut u32) -> (f64, f64) {
+    fn edge_edge(&self, edge_a: u32, edge_b: u32, c: &Crossing, best: &mut Best, planes: &mut u32) -> Sides {
         let (rod_a, rod_b) = (&self.a.rods[edge_a as usize], &self.b.rods[edge_b as usize]);
         let n = c.normal;
         // x = b + beta u_B - R (a + alpha u_A) + f n
@@ -254,25 +318,47 @@ impl<'a> Placed<'a> {
         let (along_a, width_a) = if width_a < 0.0 { (-along_a, -width_a) } else { (along_a, width_a) };
         let at_a = along_a.dot(w);
         let beyond_a = [-at_a, at_a - rod_a.length * width_a];
+        // The ends of the arcs that the sides stand for.
+        let ends_b = [c.arc_a[1 - c.a_at_b1], c.arc_a[c.a_at_b1]];
+        let end_face =
+            |end: usize| self.b.planes[rod_b.faces[if end == 1 { c.b_at_a1 } else { 1 - c.b_at_a1 }] as usize].0;
+        let cosines_b = [n.dot(ends_b[0]), n.dot(ends_b[1])];
+        let cosines_a = [n.dot(end_face(0)), n.dot(end_face(1))];
+        // When A turns by an angle, the normal turns by at most `normal_turn` times that, a side by that and once more.
+        let sine = width_b.max(width_a);
+        let normal_turn = 1.4 / sine;
+        let lever = self.a.radius + (1.0 + normal_turn) * (rod_a.length + rod_b.length + distance.abs());
+        // With tan(t/2) <= 1 / (1 + cos t) for the neighbour's angle, as long as the angle stays.
+        let lead = |s: f64, cosine: f64| (-s * (1.0 + cosine) - under) / (2.0 + cosine);
+        let mut room = lead(beyond_a[0], cosines_a[0])
+            .min(lead(beyond_a[1], cosines_a[1]))
+            .min(lead(beyond_b[0], cosines_b[0]))
+            .min(lead(beyond_b[1], cosines_b[1]));
+        room = (0.8 * room).min(0.25 * sine * lever);
+        let turn = (1.0 + normal_turn) * room / lever;
         for end in 0..2 {
-            let s = beyond_b[end];
+            let (s, cosine) = (beyond_b[end], cosines_b[end]);
             nearest = nearest.max(s);
-            let target = c.arc_a[if end == 1 { c.a_at_b1 } else { 1 - c.a_at_b1 }];
-            if may_win(s, under, n.dot(target), self.eps) {
+            if may_win(s + room, under + room, cosine - turn, 0.0) {
+                room = 0.0;
+            }
+            if may_win(s, under, cosine, self.eps) {
                 *planes += 1;
                 let (next, m) = self.across_at_b(edge_a, edge_b, end, c);
                 best.offer(s, e, n, m, self.eps, next);
             }
-            let s = beyond_a[end];
+            let (s, cosine) = (beyond_a[end], cosines_a[end]);
             nearest = nearest.max(s);
-            let face = rod_b.faces[if end == 1 { c.b_at_a1 } else { 1 - c.b_at_a1 }];
-            if may_win(s, under, n.dot(self.b.planes[face as usize].0), self.eps) {
+            if may_win(s + room, under + room, cosine - turn, 0.0) {
+                room = 0.0;
+            }
+            if may_win(s, under, cosine, self.eps) {
                 *planes += 1;
                 let (next, m) = self.across_at_a(edge_a, edge_b, end, c);
                 best.offer(s, e, n, m, self.eps, next);
             }
         }
-        (distance, -nearest)
+        Sides { distance, inside: -nearest, room, lever, normal_turn }
     }
 
     /// Across the side of a type-C C-face at an end of B's edge: along A's arc, in the cell of that vertex of B.
@@ -322,6 +408,29 @@ impl<'a> Placed<'a> {
         }
     }
 
+    /// The plane of a node that is known to be applicable; none where edges are too nearly parallel to be sure.
+    #[inline]
+    pub(crate) fn steady_plane(a: &Body, b: &Body, at: &At, node: BasicContact) -> Option<CFace> {
+        let (x, r) = (at.pose.translation, &at.r);
+        let (normal_w, distance) = match node {
+            BasicContact::TypeB { vertex_a, face_b } => {
+                let (n, d) = b.planes[face_b.index()];
+                (n, n.dot(x + *r * a.points[vertex_a.index()]) - d)
+            }
+            BasicContact::TypeA { face_a, vertex_b } => {
+                let (n, d) = a.planes[face_a.index()];
+                (-(*r * n), n.dot(r.transpose() * (b.points[vertex_b.index()] - x)) - d)
+            }
+            BasicContact::TypeC { edge_a, edge_b } => {
+                let (rod_a, rod_b) = (&a.rods[edge_a.index()], &b.rods[edge_b.index()]);
+                let n = [b.planes[rod_b.faces[0] as usize].0, b.planes[rod_b.faces[1] as usize].0];
+                let n = true_normal(n, *r * rod_a.dir)?.normalize();
+                (n, n.dot(x + *r * rod_a.origin - rod_b.origin))
+            }
+        };
+        Some(CFace { contact: node, normal_w, distance })
+    }
+
     /// The plane of an applicable node.
     pub(crate) fn plane(&self, node: BasicContact) -> CFace {
         let (normal_w, distance) = match node {
@@ -342,6 +451,17 @@ impl<'a> Placed<'a> {
             },
         };
         CFace { contact: node, normal_w, distance }
+    }
+
+    /// A vertex of A and one of B that support the two bodies along the node's normal.
+    pub(crate) fn vertices_of(&self, node: BasicContact) -> (u32, u32) {
+        match node {
+            BasicContact::TypeB { vertex_a, face_b } => (vertex_a.0, self.b.vertex_of_face(face_b.0)),
+            BasicContact::TypeA { face_a, vertex_b } => (self.a.vertex_of_face(face_a.0), vertex_b.0),
+            BasicContact::TypeC { edge_a, edge_b } => {
+                (self.a.rods[edge_a.index()].vertices[0], self.b.rods[edge_b.index()].vertices[0])
+            }
+        }
     }
 
     /// A node next to the unit direction `m` (axes of W), where vertices `va` and `vb` support the two bodies, with
@@ -393,6 +513,14 @@ impl<'a> Placed<'a> {
         }
         out
     }
+}
+
+/// A multiple of the normal of the plane along the edge between B's faces with normals `n` and A's edge along `u`; none
+/// if the edges are nearly parallel or A's does not pass between the faces.
+#[inline]
+fn true_normal(n: [DVec3; 2], u: DVec3) -> Option<DVec3> {
+    let p = [n[0].dot(u), n[1].dot(u)];
+    (p[0] * p[1] < 0.0 && (p[0] - p[1]).abs() > 1e-9).then(|| n[0] * p[1].abs() + n[1] * p[0].abs())
 }
 
 /// Whether a neighbour between here and the end of the arc (cosine of the angle to it) could be better.
