@@ -140,7 +140,7 @@ impl PairState {
         } else {
             if self.rival.is_none() {
                 // The proof may reach as far as the walk's answer does, less far, or for this pose alone.
-                let rooms: &[f64] = if room > 0.0 { &[1.0, 0.125, 0.0] } else { &[0.0] };
+                let rooms: &[f64] = if room > 0.0 { &[0.6, 0.2, 0.0] } else { &[0.0] };
                 let proof = rooms.iter().map(|part| part * room).find(|r| {
                     inscribed_ball_proves(&placed, &near, *r) || self.certificate.holds(&placed, pose, &near, *r)
                 });
