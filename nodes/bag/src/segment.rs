@@ -2,9 +2,10 @@ use crate::FeatureBook;
 use crate::principal_contact::{PrincipalContact, principal_contacts};
 use haptics::FormationKind;
 use servo::TickRecord;
+use servo::config::ContactsConfig;
 use spatial::Stamp;
 
-/// When a change of contact counts as one.
+/// When a change of contact counts as one; a servo's parameters `contacts.*`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentOptions {
     /// A state that lasts less is none, s.
@@ -13,9 +14,15 @@ pub struct SegmentOptions {
     pub min_depth: f64,
 }
 
+impl From<&ContactsConfig> for SegmentOptions {
+    fn from(c: &ContactsConfig) -> Self {
+        Self { debounce: c.debounce, min_depth: c.min_depth }
+    }
+}
+
 impl Default for SegmentOptions {
     fn default() -> Self {
-        Self { debounce: 0.02, min_depth: 1e-7 }
+        Self::from(&ContactsConfig::default())
     }
 }
 

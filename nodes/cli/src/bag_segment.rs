@@ -2,24 +2,38 @@ use crate::atomic_file::AtomicFile;
 use crate::bag_scene::scene_of;
 use crate::failure::Failure;
 use crate::stdout::say;
+use bag::msg::ServoConfiguration;
 use bag::{BagReader, FeatureBook, Segment, SegmentOptions, Segmenter, StateGraph, Ticks};
+use servo::Config;
 use std::path::{Path, PathBuf};
 
 /// How runs are cut into contact states.
 #[derive(clap::Args)]
 pub struct Cut {
-    /// A contact state that lasts less is none, s.
-    #[arg(long, default_value_t = SegmentOptions::default().debounce, value_parser = not_negative)]
-    debounce: f64,
-    /// A contact begins once it is this deep, metres.
-    #[arg(long, default_value_t = SegmentOptions::default().min_depth, value_parser = not_negative)]
-    min_depth: f64,
+    /// A contact state that lasts less is none, s; otherwise `contacts.debounce` of the bag's configuration (0.02).
+    #[arg(long, value_parser = not_negative)]
+    debounce: Option<f64>,
+    /// A contact begins once the hand is this deep, metres; otherwise `contacts.min_depth` of the bag (1e-7).
+    #[arg(long, value_parser = not_negative)]
+    min_depth: Option<f64>,
     /// The topic of the ticks, if the bag holds those of several servos.
     #[arg(long)]
     topic: Option<String>,
     /// The scene file, if the bag does not carry its scene.
     #[arg(long)]
     scene: Option<PathBuf>,
+}
+
+impl Cut {
+    /// What was asked for, else what the servo itself went by, so that live and afterwards the same states are seen.
+    fn options(&self, recorded: Option<&ServoConfiguration>) -> SegmentOptions {
+        let own = recorded.and_then(|c| Config::from_yaml(&c.yaml).ok()).unwrap_or_default();
+        let own = SegmentOptions::from(&own.contacts);
+        SegmentOptions {
+            debounce: self.debounce.unwrap_or(own.debounce),
+            min_depth: self.min_depth.unwrap_or(own.min_depth),
+        }
+    }
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {
@@ -101,7 +115,7 @@ impl Run {
             (None, Some(description)) => Some(scene_of(dir, description)?),
             (None, None) => None,
         };
-        let options = SegmentOptions { debounce: cut.debounce, min_depth: cut.min_depth };
+        let options = cut.options(ticks.find_configuration().as_ref());
         let mut segmenter = Segmenter::new(options, scene.map(|s| FeatureBook::new(&s.world)));
         let mut segments = Vec::new();
         for tick in ticks.by_ref() {

@@ -12,6 +12,7 @@ mod operator_scene;
 mod output;
 mod record;
 mod sample_check;
+mod sample_count;
 mod servo_handle;
 mod servo_loop;
 mod stability;

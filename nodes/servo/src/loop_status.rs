@@ -15,6 +15,10 @@ pub struct LoopStatus {
     pub pictures_dropped: u64,
     /// Steps of the wall clock.
     pub clock_steps: u64,
+    /// Samples of the device that were duplicates or came out of order.
+    pub samples_repeated: u64,
+    /// Samples of the device that were lost or not finite.
+    pub samples_bad: u64,
     /// From the scheduled moment to the thread's first instruction.
     pub wakeup: LatencyHistogram,
     /// From wake-up until the wrench is with the device.
@@ -33,6 +37,8 @@ impl LoopStatus {
             records_dropped,
             pictures_dropped,
             clock_steps,
+            samples_repeated,
+            samples_bad,
             wakeup,
             compute,
             period,
@@ -43,6 +49,8 @@ impl LoopStatus {
         *records_dropped = other.records_dropped;
         *pictures_dropped = other.pictures_dropped;
         *clock_steps = other.clock_steps;
+        *samples_repeated = other.samples_repeated;
+        *samples_bad = other.samples_bad;
         wakeup.copy_from(&other.wakeup);
         compute.copy_from(&other.compute);
         period.copy_from(&other.period);

@@ -40,7 +40,7 @@ impl SampleCheck {
         // After a silence anything is newer: the device's clock may have started anew.
         let silent = self.is_stale(now);
         let usable = sample.sequence != 0 && finite && sample.connected;
-        let again = self.last.is_some_and(|s| s == *sample);
+        let again = self.is_again(sample);
         let fresh = usable && !again && (silent || self.is_newer(sample, &mut health));
         if fresh {
             self.last = Some(*sample);
@@ -57,15 +57,26 @@ impl SampleCheck {
         self.last.is_none_or(|s| age_ns(s) > self.timeout_ns)
     }
 
-    /// The same sample again is normal where the servo is faster than the device; a sample that goes back in time, or
-    /// another one under the same number, is not right.
+    /// The same sample again is normal where the servo is faster than the device. Its buttons may change meanwhile.
+    fn is_again(&mut self, sample: &Sample) -> bool {
+        let Some(last) = &mut self.last else { return false };
+        let again = Sample { buttons: sample.buttons, ..*last } == *sample;
+        if again {
+            last.buttons = sample.buttons;
+        }
+        again
+    }
+
+    /// A sample that goes back in time, another one under the same number, or the same one under a new number is not right.
     fn is_newer(&self, sample: &Sample, health: &mut Health) -> bool {
         let Some(last) = &self.last else { return true };
-        if sample.sequence == last.sequence || (sample.stamp, sample.sequence) < (last.stamp, last.sequence) {
+        // A lower number under a later stamp: the device started again.
+        let later = (sample.stamp, sample.sequence) > (last.stamp, last.sequence);
+        let repeated = Sample { sequence: sample.sequence, buttons: sample.buttons, ..*last } == *sample;
+        if sample.sequence == last.sequence || !later || repeated {
             health.set(Health::SEQUENCE);
         }
-        // A lower number under a later stamp: the device started again.
-        (sample.stamp, sample.sequence) > (last.stamp, last.sequence)
+        later && !repeated
     }
 }
 
@@ -109,6 +120,27 @@ mod tests {
         assert_eq!(check.check(&long, at(8)).health, Health::INVALID);
         let gone = Sample { connected: false, ..sample(3, 9) };
         assert_eq!(check.check(&gone, at(9)).health, Health::DISCONNECTED);
+    }
+
+    #[test]
+    fn one_measurement_under_two_numbers_is_a_duplicate() {
+        let mut check = SampleCheck::new(0.01);
+        check.check(&sample(1, 1), at(1));
+        let twice = check.check(&sample(2, 1), at(2));
+        assert!(twice.health == Health::SEQUENCE && !twice.fresh);
+        // Another pose at the same moment is news, however coarse the device's clock.
+        let moved = Sample { pose: Pose::new(DVec3::X, DQuat::IDENTITY), ..sample(3, 1) };
+        let news = check.check(&moved, at(3));
+        assert!(news.health == Health::GOOD && news.fresh);
+    }
+
+    #[test]
+    fn a_button_pressed_between_two_poses_is_no_fault() {
+        let mut check = SampleCheck::new(0.01);
+        check.check(&sample(1, 1), at(1));
+        let pressed = check.check(&Sample { buttons: 2, ..sample(1, 1) }, at(2));
+        assert!(pressed.health == Health::GOOD && !pressed.fresh);
+        assert_eq!(pressed.sample.unwrap().buttons, 2);
     }
 
     #[test]

@@ -1,3 +1,4 @@
+use crate::sample_count::SampleCount;
 use crate::servo_loop::ServoLoop;
 use crate::{Commands, LoopStatus, TickInput, TickRecord};
 use device::HapticDevice;
@@ -145,6 +146,7 @@ where
         pictures: pictures_writer,
         status_cell,
         status: LoopStatus::default(),
+        samples: SampleCount::default(),
         period_ns: (1e9 / config.rate_hz).round() as i64,
     };
     let stop = Arc::new(AtomicBool::new(false));

@@ -1,3 +1,4 @@
+use crate::sample_count::SampleCount;
 use crate::{Commands, Health, LoopStatus, TickInput, TickRecord};
 use device::HapticDevice;
 use realtime::{
@@ -15,6 +16,7 @@ pub(crate) struct ServoLoop<S> {
     pub(crate) pictures: RingWriter<TickRecord>,
     pub(crate) status_cell: LatestWriter<LoopStatus>,
     pub(crate) status: LoopStatus,
+    pub(crate) samples: SampleCount,
     pub(crate) period_ns: i64,
 }
 
@@ -106,6 +108,7 @@ impl<S: FnMut(&TickInput) -> TickRecord> ServoLoop<S> {
         self.device.write(&record.out_wrench);
         let compute_ns = (monotonic_ns() - wakeup.woke_ns).max(0) as u64;
         self.status.compute.record(compute_ns);
+        self.samples.add(&record);
         record.wakeup_ns = saturate(wakeup.latency_ns() + wakeup.skipped * self.period_ns as u64);
         record.compute_ns = saturate(compute_ns);
         let to_records = self.records.push(record);
@@ -116,6 +119,8 @@ impl<S: FnMut(&TickInput) -> TickRecord> ServoLoop<S> {
     fn publish_status(&mut self) {
         self.status.records_dropped = self.records.dropped();
         self.status.pictures_dropped = self.pictures.dropped();
+        self.status.samples_repeated = self.samples.repeated;
+        self.status.samples_bad = self.samples.bad;
         self.status_cell.write_with(|cell| cell.copy_from(&self.status));
     }
 }

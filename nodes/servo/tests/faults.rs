@@ -118,6 +118,8 @@ struct Outcome {
     began: usize,
     zero_ms: Option<f64>,
     largest_after: f64,
+    /// Samples that the loop counted as repeated, and as bad.
+    counted: (u64, u64),
 }
 
 /// Runs until well after the fault; force must be felt before it, or the test waits in vain.
@@ -152,12 +154,14 @@ fn inject(fault: Fault) -> Outcome {
         assert!(Instant::now() < deadline, "{fault:?}: no force was ever felt");
     }
     servo.handle.join().unwrap();
+    let status = servo.status.read();
     let log = log.lock().unwrap();
     let began_ns = log.began_ns.unwrap();
     Outcome {
         began: log.began_tick as usize,
         zero_ms: log.zero_ns.map(|z| (z - began_ns) as f64 * 1e-6),
         largest_after: log.largest_after,
+        counted: (status.samples_repeated, status.samples_bad),
         records,
     }
 }
@@ -218,6 +222,15 @@ fn duplicate_and_out_of_order_samples_are_not_used_and_go_stale() {
     assert_cut(Fault::Duplicate, 11, Health::STALE);
     assert_cut(Fault::OutOfOrder, 11, Health::SEQUENCE);
     assert_cut(Fault::OldStamp, 11, Health::STALE);
+}
+
+#[test]
+fn samples_of_no_use_are_counted_once_each() {
+    let lasts = u64::from(LASTS);
+    assert_eq!(inject(Fault::NanPose).counted, (0, lasts));
+    // The same wrong sample all the time; meanwhile the numbers of the good ones are skipped.
+    assert_eq!(inject(Fault::Duplicate).counted, (1, lasts));
+    assert_eq!(inject(Fault::OutOfOrder).counted.0, 1);
 }
 
 /// A tick over the scene, and a hand that presses 1 mm into the plate.

@@ -59,8 +59,8 @@ impl ServoReport<'_> {
             ticks_late: s.late_ticks,
             lost_ros: s.records_dropped,
             lost_pictures: s.pictures_dropped,
-            samples_repeated: 0,
-            samples_bad: 0,
+            samples_repeated: s.samples_repeated,
+            samples_bad: s.samples_bad,
             wakeup_p50_ns: ns(wakeup.p50_ns),
             wakeup_p99_ns: ns(wakeup.p99_ns),
             wakeup_max_ns: ns(wakeup.max_ns),
@@ -99,6 +99,8 @@ impl ServoReport<'_> {
             value("records lost to ROS", s.records_dropped),
             value("records lost to pictures", s.pictures_dropped),
             value("clock steps", s.clock_steps),
+            value("samples repeated or out of order", s.samples_repeated),
+            value("samples lost or not finite", s.samples_bad),
             value("thread", self.grants),
         ];
         for (name, histogram) in [("wake-up", &s.wakeup), ("compute", &s.compute), ("period", &s.period)] {

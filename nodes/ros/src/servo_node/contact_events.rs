@@ -1,7 +1,7 @@
 use bag::msg::{ContactState, Header, PrincipalContact};
 use bag::{FeatureBook, Segment, SegmentOptions, Segmenter, contact_to_msg};
 use cspace::World;
-use servo::TickRecord;
+use servo::{Config, TickRecord};
 use spatial::Stamp;
 
 /// `ContactState.EVENT_*`.
@@ -20,11 +20,10 @@ pub struct ContactEvents {
 impl ContactEvents {
     /// For the features of a world.
     #[must_use]
-    pub fn new(frame_id: &str, world: &World) -> Self {
-        // Live, a change is wanted soon: a quarter of the time that a study waits for a state to settle.
-        let options = SegmentOptions { debounce: 0.005, ..SegmentOptions::default() };
+    pub fn new(config: &Config, world: &World) -> Self {
+        let options = SegmentOptions::from(&config.contacts);
         let segmenter = Segmenter::new(options, Some(FeatureBook::new(world)));
-        Self { frame_id: frame_id.to_owned(), segmenter }
+        Self { frame_id: config.frame_id.clone(), segmenter }
     }
 
     /// Takes a tick in; gives the end of the old state and the begin of the new one when a new one is confirmed. The

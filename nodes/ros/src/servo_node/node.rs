@@ -88,7 +88,7 @@ impl ServoNode {
         scene_talker.say(&scene_description(&scene, host.now(), &config.frame_id))?;
         parameters.serve(host.now(), &mut |_| Ok(()))?;
         let node = Self {
-            events: ContactEvents::new(&config.frame_id, &scene.world),
+            events: ContactEvents::new(&config, &scene.world),
             cspace,
             cspace_view: CSpaceView::new(&scene.world, &config.frame_id),
             cspace_due: Due::every(CSPACE_PERIOD),

@@ -11,8 +11,8 @@ pub use param::{ParamError, ParamSpec, Range, Value};
 pub use schema::schema;
 use tree::Tree;
 pub use values::{
-    Config, DeviceConfig, Driver, JumpConfig, MappingConfig, PassivityConfig, RealtimeConfig, StabilityConfig,
-    StabilityPolicy,
+    Config, ContactsConfig, DeviceConfig, Driver, JumpConfig, MappingConfig, PassivityConfig, RealtimeConfig,
+    StabilityConfig, StabilityPolicy,
 };
 
 impl Config {

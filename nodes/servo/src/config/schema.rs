@@ -397,6 +397,22 @@ static SCHEMA: &[ParamSpec] = &[
         "Motion between two ticks that counts as a jump: contact is sought anew, force ramps from zero."
     ),
     float!("jump.angle", 0.001..3.2, "rad", restart, [jump.angle], "Turn between two ticks that counts as a jump."),
+    float!(
+        "contacts.debounce",
+        0.0..10.0,
+        "s",
+        restart,
+        [contacts.debounce],
+        "Time that a contact state must last to count: events on ~/contacts come so much later, dated back; `bag segment` takes it from the bag."
+    ),
+    float!(
+        "contacts.min_depth",
+        0.0..0.01,
+        "m",
+        restart,
+        [contacts.min_depth],
+        "Depth of the hand from which on a contact counts; it ends when it is gone."
+    ),
     choice!("stability.check", restart, [stability.check], ["off" => StabilityPolicy::Off, "warn" => StabilityPolicy::Warn, "refuse" => StabilityPolicy::Refuse],
         "What to do at start about gains beyond the bounds of stability."),
     float!(

@@ -26,6 +26,8 @@ pub struct Config {
     pub passivity: PassivityConfig,
     /// `stability.*`.
     pub stability: StabilityConfig,
+    /// `contacts.*`.
+    pub contacts: ContactsConfig,
     /// `realtime.*`.
     pub realtime: RealtimeConfig,
 }
@@ -86,6 +88,21 @@ pub struct JumpConfig {
     pub distance: f64,
     /// Rad.
     pub angle: f64,
+}
+
+/// When a change of contact counts as one: live and in what is cut from a bag afterwards alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactsConfig {
+    /// A contact state that lasts less is none, s.
+    pub debounce: f64,
+    /// A contact begins once the hand is this deep, metres; it ends when it is gone.
+    pub min_depth: f64,
+}
+
+impl Default for ContactsConfig {
+    fn default() -> Self {
+        Self { debounce: 0.02, min_depth: 1e-7 }
+    }
 }
 
 /// Bounds of the passivity controller.
@@ -170,6 +187,7 @@ impl Default for Config {
                 velocity_cutoff: 150.0,
             },
             jump: JumpConfig { distance: 0.02, angle: 0.2 },
+            contacts: ContactsConfig::default(),
             passivity: PassivityConfig { max_damping: 20.0, lever: 0.03, budget: 2e-3 },
             stability: StabilityConfig {
                 check: StabilityPolicy::Warn,
