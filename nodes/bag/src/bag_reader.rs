@@ -1,6 +1,6 @@
 use crate::BagError;
 use crate::mcap_record::{ChannelRecord, SchemaRecord};
-use crate::mcap_scan::{Damage, Found, McapScan};
+use crate::mcap_scan::{Damage, Found, McapScan, summary_is_sound};
 use crate::metadata::ForeignMetadata;
 use spatial::Stamp;
 use std::collections::HashMap;
@@ -133,8 +133,10 @@ impl BagReader {
         // The summary holds all channels of a finished file; in others they stand in the chunks.
         let mut quick = McapScan::new(&name, &file, false);
         quick.by_ref().for_each(|f| found.take(f));
-        let complete = quick.is_complete();
+        let complete = quick.is_complete() && summary_is_sound(&file);
         if !complete || found.channels.is_empty() {
+            // What stands in chunks is under their checksums and comes first.
+            found = Channels::default();
             McapScan::new(&name, &file, true).for_each(|f| found.take(f));
         }
         let channels = found.channels.iter().map(|c| (c.id, self.topic_of(c, &found.schemas))).collect();

@@ -63,6 +63,8 @@ pub struct BagWriter {
     topics: Vec<(TopicMetadata, SchemaRecord, u32)>,
     files: Vec<FileMetadata>,
     open: McapFile,
+    /// Log time of the newest message, ns.
+    newest: u64,
     flushed: Instant,
     finished: bool,
 }
@@ -87,6 +89,7 @@ impl BagWriter {
             topics: Vec::new(),
             files: Vec::new(),
             open,
+            newest: 0,
             flushed: Instant::now(),
             finished: false,
         };
@@ -144,13 +147,17 @@ impl BagWriter {
         self.add_topic(name, &description, qos)
     }
 
-    /// Records a message of `topic` that came in at `stamp`: CDR with its four-byte header.
+    /// Records a message of `topic` that came in at `stamp`: CDR with its four-byte header. Should the clock step back, the
+    /// log time stands still until it has caught up, so that readers that sort by it keep the order; the publish time is
+    /// `stamp` in any case.
     ///
     /// # Errors
     /// If a flush was due and failed. The message is kept and the flush is tried again with the next one.
     pub fn write(&mut self, topic: TopicId, stamp: Stamp, cdr: &[u8]) -> Result<(), BagError> {
         // MCAP has unsigned times; nothing is recorded before 1970.
-        let time = u64::try_from(stamp.0).unwrap_or(0);
+        let publish_time = u64::try_from(stamp.0).unwrap_or(0);
+        let time = publish_time.max(self.newest);
+        self.newest = time;
         let too_long = match (self.options.max_file_duration, self.open.times()) {
             (Some(most), Some((first, _))) => u128::from(time.saturating_sub(first)) >= most.as_nanos(),
             _ => false,
@@ -160,7 +167,7 @@ impl BagWriter {
             self.split()?;
         }
         let (metadata, _, sequence) = &mut self.topics[topic.0];
-        self.open.push(topic.0, *sequence, time, time, cdr);
+        self.open.push(topic.0, *sequence, time, publish_time, cdr);
         metadata.count += 1;
         *sequence = sequence.wrapping_add(1);
         if self.open.pending_size() >= self.options.chunk_size { self.flush() } else { self.poll() }

@@ -194,3 +194,26 @@ fn parse(kind: u8, mut p: Parts<'_>) -> Option<Found> {
         _ => None,
     }
 }
+
+/// Whether the summary of a finished file fits the checksum in its footer; writers may leave the checksum out.
+pub(crate) fn summary_is_sound(file: &File) -> bool {
+    const FOOTER: usize = 9 + 20;
+    let sound = || {
+        let end = file.metadata().ok()?.len();
+        let from = end.checked_sub((FOOTER + MAGIC.len()) as u64)?;
+        let mut footer = [0; FOOTER];
+        file.read_exact_at(&mut footer, from).ok()?;
+        let (kind, mut parts) = Parts(&footer).record()?;
+        let (start, _, crc) = (parts.u64()?, parts.u64()?, parts.u32()?);
+        if kind != op::FOOTER || start > from {
+            return None;
+        }
+        if crc == 0 || start == 0 {
+            return Some(true);
+        }
+        let mut bytes = vec![0; usize::try_from(end - start).ok()? - MAGIC.len() - 4];
+        file.read_exact_at(&mut bytes, start).ok()?;
+        Some(crc32fast::hash(&bytes) == crc)
+    };
+    sound().unwrap_or(false)
+}

@@ -33,7 +33,10 @@ pub fn read_poses(dir: &Path, topic: Option<&str>) -> Result<PoseLog, BagError> 
         let reason = if candidates.is_empty() {
             format!("the bag has no topic of {}", PoseStamped::NAME)
         } else {
-            format!("choose one topic of {names}")
+            match topic {
+                Some(t) => format!("no poses on {t}; choose one of {names} (--topic)"),
+                None => format!("the bag has poses on several topics; choose one of {names} (--topic)"),
+            }
         };
         return Err(BagError::format(dir, reason));
     };

@@ -130,17 +130,19 @@ pub struct Change {
 
 /// Cuts a run into contact states while it goes on: a tick in, a confirmed change out.
 ///
-/// A state counts once it has lasted for the debounce time; it then begins where it was first seen without a break. What
-/// flickers in between belongs to the old state if that comes back, else to none.
+/// A state counts once it was seen for the debounce time while the old one was not; it then begins where it was first seen.
+/// What flickers for less than the debounce time belongs to the state that comes back: the old one, or the one that is
+/// about to begin. What lies between an old state and the next belongs to none.
 #[derive(Clone, Debug)]
 pub struct Segmenter {
     options: SegmentOptions,
     book: Option<FeatureBook>,
     current: Option<Segment>,
-    candidate: Option<Segment>,
+    /// States seen since the current one was seen last, none of them longer ago than the debounce time.
+    candidates: Vec<Segment>,
     /// The first tick that was not in the current state since it was seen last.
     left: Option<Stamp>,
-    /// What happened since then, but for the candidate.
+    /// What happened since then, but for the candidates.
     between: Statistics,
     /// Contacts of the last tick.
     held: Vec<PrincipalContact>,
@@ -155,7 +157,7 @@ impl Segmenter {
             options,
             book,
             current: None,
-            candidate: None,
+            candidates: Vec::new(),
             left: None,
             between: Statistics::default(),
             held: Vec::new(),
@@ -176,41 +178,56 @@ impl Segmenter {
         if let Some(current) = self.current.as_mut().filter(|c| c.contacts == contacts) {
             // Back again: what flickered was part of it.
             current.statistics.merge(&std::mem::take(&mut self.between));
-            if let Some(candidate) = self.candidate.take() {
-                current.statistics.merge(&candidate.statistics);
-            }
+            self.candidates.drain(..).for_each(|c| current.statistics.merge(&c.statistics));
             current.statistics.add(tick);
             current.end = stamp;
             self.left = None;
             return None;
         }
         self.left.get_or_insert(stamp);
-        if self.candidate.as_ref().is_none_or(|c| c.contacts != contacts) {
-            if let Some(old) = self.candidate.take() {
-                self.between.merge(&old.statistics);
-            }
-            let kind = contacts.iter().map(|c| c.kind).max().unwrap_or_default();
-            let statistics = Statistics::default();
-            self.candidate =
-                Some(Segment { index: self.next_index, begin: stamp, end: stamp, kind, contacts, statistics });
-        }
-        let candidate = self.candidate.as_mut()?;
+        let at = self.candidate(contacts, stamp);
+        let candidate = &mut self.candidates[at];
         candidate.statistics.add(tick);
         candidate.end = stamp;
         // A tick stands for its period; the tolerance keeps twenty ticks of 1 ms from being less than 20 ms.
         if candidate.statistics.time < self.options.debounce * (1.0 - 1e-9) {
             return None;
         }
-        let began = self.candidate.take()?;
+        let mut began = self.candidates.swap_remove(at);
+        began.index = self.next_index;
+        // What flickered since it was first seen is part of it.
+        let from = began.begin;
+        let since = self.candidates.drain(..).filter(|c| c.begin >= from);
+        since.for_each(|c| began.statistics.merge(&c.statistics));
         let ended = self.close();
         self.next_index += 1;
         self.current = Some(began.clone());
         Some(Change { ended, began })
     }
 
+    /// The place of the candidate of these contacts, new if it was not seen lately.
+    fn candidate(&mut self, contacts: Vec<PrincipalContact>, stamp: Stamp) -> usize {
+        let (debounce, between) = (self.options.debounce, &mut self.between);
+        self.candidates.retain(|c| {
+            let lately = (stamp.0.saturating_sub(c.end.0)) as f64 * 1e-9 <= debounce;
+            if !lately {
+                between.merge(&c.statistics);
+            }
+            lately
+        });
+        if let Some(at) = self.candidates.iter().position(|c| c.contacts == contacts) {
+            return at;
+        }
+        let kind = contacts.iter().map(|c| c.kind).max().unwrap_or_default();
+        let statistics = Statistics::default();
+        let index = self.next_index;
+        self.candidates.push(Segment { index, begin: stamp, end: stamp, kind, contacts, statistics });
+        self.candidates.len() - 1
+    }
+
     /// Ends the run: the last state, if one was confirmed.
     pub fn finish(&mut self) -> Option<Segment> {
-        self.candidate = None;
+        self.candidates.clear();
         self.held.clear();
         self.close()
     }

@@ -68,8 +68,10 @@ impl<'a> Ticks<'a> {
         let topic = match chosen[..] {
             [one] => one,
             [] if candidates.is_empty() => return fail(format!("the bag has no topic of {}", TickBatch::NAME)),
-            [] => return fail(format!("no ticks on {}; choose one of {}", topic.unwrap_or_default(), names())),
-            _ => return fail(format!("the bag has the ticks of several servos; choose one of {}", names())),
+            [] => {
+                return fail(format!("no ticks on {}; choose one of {} (--topic)", topic.unwrap_or_default(), names()));
+            }
+            _ => return fail(format!("the bag has the ticks of several servos; choose one of {} (--topic)", names())),
         };
         Ok(Self {
             messages: reader.messages(),

@@ -88,6 +88,26 @@ fn a_thousand_flipped_bits_cost_at_most_a_chunk_each_and_never_a_panic() {
 }
 
 #[test]
+fn flipped_bits_in_index_and_summary_cost_nothing() {
+    for compression in [Compression::None, Compression::Zstd(1)] {
+        let dir = tempfile::tempdir().unwrap();
+        let (file, ticks) = bag(dir.path(), compression);
+        let good = std::fs::read(&file).unwrap();
+        let chunks = mcap::Summary::read(&good).unwrap().unwrap().chunk_indexes;
+        let last = chunks.iter().map(|c| c.chunk_start_offset + c.chunk_length).max().unwrap() as usize;
+        let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(31);
+        for _ in 0..500 {
+            let mut bytes = good.clone();
+            let bit = rng.random_range(last * 8..bytes.len() * 8);
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            std::fs::write(&file, &bytes).unwrap();
+            assert_eq!(recovered(&file, &ticks).0, ticks.len(), "bit {bit}, the last chunk ends at byte {last}");
+            assert_eq!(BagInfo::read(&file).unwrap().messages(), ticks.len() as u64, "bit {bit}");
+        }
+    }
+}
+
+#[test]
 fn many_flipped_bits_at_once_never_panic_and_never_give_a_wrong_tick() {
     let dir = tempfile::tempdir().unwrap();
     let (file, ticks) = bag(dir.path(), Compression::Zstd(1));

@@ -196,3 +196,21 @@ fn an_unknown_type_and_a_folder_in_use_are_refused_with_the_reason() {
     let error = BagWriter::create(dir.path(), BagOptions::default()).unwrap_err().to_string();
     assert!(error.ends_with("exists already; name a new folder for the bag"), "{error}");
 }
+
+#[test]
+fn log_times_never_run_back_when_the_clock_does() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("run");
+    let mut writer = BagWriter::create(&path, BagOptions::default()).unwrap();
+    let topic = writer.add::<bag::msg::Text>("/t", &[Qos::RELIABLE]).unwrap();
+    let clock = [5, 6, 2, 3, 7];
+    for (i, time) in clock.into_iter().enumerate() {
+        let text = bag::msg::Text { data: i.to_string() };
+        writer.write_message(topic, Stamp(time), &text).unwrap();
+    }
+    writer.finish().unwrap();
+    let bytes = std::fs::read(path.join("run_0.mcap")).unwrap();
+    let times: Vec<_> =
+        mcap::MessageStream::new(&bytes).unwrap().map(|m| m.unwrap()).map(|m| (m.log_time, m.publish_time)).collect();
+    assert_eq!(times, [(5, 5), (6, 6), (6, 2), (6, 3), (7, 7)]);
+}

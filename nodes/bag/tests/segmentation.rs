@@ -175,6 +175,37 @@ fn flicker_is_part_of_the_state_that_it_interrupts() {
 }
 
 #[test]
+fn a_contact_that_chatters_is_one_state_from_its_first_touch_on() {
+    let at = |z: f64| run(&world(), LawKind::Paper, DQuat::IDENTITY, [-0.05, 0.0, z], &[([-0.05, 0.0, z], 1)])[0];
+    let (touch, free) = (at(0.0199), at(0.05));
+    let corner =
+        run(&world(), LawKind::Paper, DQuat::IDENTITY, [0.0801, 0.0, 0.0199], &[([0.0801, 0.0, 0.0199], 1)])[0];
+    // Two ticks of three on the floor alone, one in the corner as well, after a long time without contact; then for good.
+    let chatter = (0..90).map(|i| if i % 3 == 2 { corner } else { touch });
+    let pattern = std::iter::repeat_n(free, 50).chain(chatter).chain(std::iter::repeat_n(corner, 40));
+    let ticks: Vec<TickRecord> = pattern
+        .zip(0..)
+        .map(|(mut t, i)| {
+            (t.input.sequence, t.input.stamp) = (i, Stamp(i as i64 * 1_000_000));
+            t
+        })
+        .collect();
+    let found = segments(&ticks, SegmentOptions::default(), Some(FeatureBook::new(&world())));
+    let spans: Vec<_> = found
+        .iter()
+        .map(|s| (s.contacts.len(), s.begin.0 / 1_000_000, s.end.0 / 1_000_000, s.statistics.ticks))
+        .collect();
+    assert_eq!(spans, [(0, 0, 50, 50), (1, 50, 139, 89), (2, 139, 179, 41)]);
+    // Touch and go, faster than the debounce, is no contact.
+    let bouncing = (0..120).map(|i| if i % 12 == 0 { touch } else { free }).zip(0..).map(|(mut t, i)| {
+        (t.input.sequence, t.input.stamp) = (i, Stamp(i as i64 * 1_000_000));
+        t
+    });
+    let found = segments(&bouncing.collect::<Vec<_>>(), SegmentOptions::default(), None);
+    assert_eq!(found.iter().map(|s| s.label()).collect::<Vec<_>>(), ["free"]);
+}
+
+#[test]
 fn the_graph_counts_states_and_transitions_over_runs() {
     let legs: &[Leg] = &[([-0.05, 0.0, 0.0199], 100), ([-0.05, 0.0, 0.0199], 100), ([-0.05, 0.0, 0.03], 100)];
     let ticks = run(&world(), LawKind::Paper, DQuat::IDENTITY, [-0.05, 0.0, 0.03], legs);
