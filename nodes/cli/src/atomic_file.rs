@@ -1,51 +1,92 @@
 use crate::failure::Failure;
-use std::io::{BufWriter, Write};
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// A file that appears whole or not at all: written under another name in the same folder, then renamed.
+/// A file that appears whole or not at all: written under another name in the same folder, then renamed. What is there
+/// already and is no ordinary file (a terminal, a pipe) is not replaced but written to, once all is known.
 pub struct AtomicFile {
+    /// As the user calls it.
     path: PathBuf,
+    place: Place,
     file: BufWriter<tempfile::NamedTempFile>,
 }
 
+enum Place {
+    /// The file's own path, behind all symbolic links.
+    File(PathBuf),
+    Device(File),
+}
+
 impl AtomicFile {
-    /// Opens the temporary file beside `path`.
-    pub fn create(path: &Path) -> Result<Self, Failure> {
+    /// Opens the temporary file beside `path`. None of `inputs` is overwritten.
+    pub fn create(path: &Path, inputs: &[&Path]) -> Result<Self, Failure> {
         if path.is_dir() {
             return Err(Failure::file(path, "is a folder, not a file to write"));
         }
-        let folder = match path.parent() {
-            Some(p) if !p.as_os_str().is_empty() => p,
-            _ => Path::new("."),
+        let own = path.canonicalize();
+        if let Ok(own) = &own
+            && inputs.iter().any(|i| i.canonicalize().is_ok_and(|i| i == *own))
+        {
+            return Err(Failure::file(path, "is read by this command: name another file to write"));
+        }
+        let place = if own.is_ok() && !path.is_file() {
+            Place::Device(OpenOptions::new().write(true).open(path).map_err(|e| cannot_write(path, &e))?)
+        } else {
+            Place::File(own.unwrap_or_else(|_| path.to_owned()))
+        };
+        let folder = match &place {
+            Place::File(file) => {
+                file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
+            }
+            Place::Device(_) => std::env::temp_dir(),
         };
         let file = tempfile::Builder::new()
             .prefix(".cspace-haptics-")
             .tempfile_in(folder)
-            .map_err(|e| Failure::file(path, format!("cannot be written: {e}")))?;
-        Ok(Self { path: path.to_owned(), file: BufWriter::with_capacity(1 << 16, file) })
+            .map_err(|e| cannot_write(path, &e))?;
+        Ok(Self { path: path.to_owned(), place, file: BufWriter::with_capacity(1 << 16, file) })
     }
 
     /// Adds text.
     pub fn write(&mut self, text: &str) -> Result<(), Failure> {
-        self.file.write_all(text.as_bytes()).map_err(|e| Failure::file(&self.path, format!("cannot be written: {e}")))
+        self.file.write_all(text.as_bytes()).map_err(|e| cannot_write(&self.path, &e))
     }
 
     /// Puts the file in its place.
     pub fn finish(self) -> Result<(), Failure> {
-        let Self { path, file } = self;
-        let bad = |e: &dyn std::fmt::Display| Failure::file(&path, format!("cannot be written: {e}"));
-        let file = file.into_inner().map_err(|e| bad(&e.error()))?;
-        file.as_file().sync_all().map_err(|e| bad(&e))?;
-        // A temporary file is private to its owner; the result is an ordinary file.
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            let mode = path.metadata().map_or(0o644, |m| m.permissions().mode() & 0o777);
-            file.as_file().set_permissions(std::fs::Permissions::from_mode(mode)).map_err(|e| bad(&e))?;
+        let Self { path, place, file } = self;
+        let bad = |e: io::Error| cannot_write(&path, &e);
+        let file = file.into_inner().map_err(|e| bad(e.into_error()))?;
+        match place {
+            Place::File(own) => put_in_place(file, &own).map_err(bad),
+            Place::Device(mut device) => {
+                let mut text = file.reopen().map_err(bad)?;
+                io::copy(&mut text, &mut device).map_err(bad)?;
+                Ok(())
+            }
         }
-        file.persist(&path).map_err(|e| bad(&e.error))?;
-        Ok(())
     }
+}
+
+fn put_in_place(file: tempfile::NamedTempFile, own: &Path) -> io::Result<()> {
+    file.as_file().sync_all()?;
+    // A temporary file is private to its owner; the result is an ordinary file.
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let mode = own.metadata().map_or(0o644, |m| m.permissions().mode() & 0o777);
+        file.as_file().set_permissions(std::fs::Permissions::from_mode(mode))?;
+    }
+    file.persist(own)?;
+    Ok(())
+}
+
+/// The user knows the file by its own name, not by that of the temporary one.
+fn cannot_write(path: &Path, e: &io::Error) -> Failure {
+    let reason = e.to_string();
+    let reason = reason.split(" at path ").next().unwrap_or_default();
+    Failure::file(path, format!("cannot be written: {reason}"))
 }
 
 #[cfg(test)]
@@ -56,15 +97,50 @@ mod tests {
     fn nothing_appears_before_the_end_and_all_of_it_then() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("o.csv");
-        let mut file = AtomicFile::create(&path).unwrap();
+        let mut file = AtomicFile::create(&path, &[]).unwrap();
         file.write("a\n").unwrap();
         assert!(!path.exists());
         drop(file);
         assert_eq!(folder.path().read_dir().unwrap().count(), 0);
-        let mut file = AtomicFile::create(&path).unwrap();
+        let mut file = AtomicFile::create(&path, &[]).unwrap();
         file.write("a\nb\n").unwrap();
         file.finish().unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "a\nb\n");
         assert_eq!(folder.path().read_dir().unwrap().count(), 1);
+    }
+
+    #[test]
+    fn reasons_name_the_users_file_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("none").join("o.csv");
+        let reason = AtomicFile::create(&path, &[]).err().unwrap().to_string();
+        assert!(reason.starts_with(&format!("{}: cannot be written: No such file", path.display())), "{reason}");
+        assert!(!reason.contains(".cspace-haptics-"), "{reason}");
+    }
+
+    #[test]
+    fn what_is_read_is_not_overwritten_and_a_link_stays_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("o.csv"), folder.path().join("link.csv"));
+        std::fs::write(&file, "in\n").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        assert!(AtomicFile::create(&link, &[&file]).is_err());
+        let mut out = AtomicFile::create(&link, &[]).unwrap();
+        out.write("out\n").unwrap();
+        out.finish().unwrap();
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "out\n");
+        assert!(link.is_symlink());
+    }
+
+    #[test]
+    fn a_device_is_written_to_and_stays_one() {
+        // As root one would otherwise rename a file over it.
+        let mut out = AtomicFile::create(Path::new("/dev/null"), &[]).unwrap();
+        out.write("a\n").unwrap();
+        out.finish().unwrap();
+        assert!(!Path::new("/dev/null").is_file());
+        let mut out = AtomicFile::create(Path::new("/dev/full"), &[]).unwrap();
+        out.write("a\n").unwrap();
+        assert!(out.finish().unwrap_err().to_string().starts_with("/dev/full: cannot be written: No space left"));
     }
 }

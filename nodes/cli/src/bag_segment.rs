@@ -1,6 +1,7 @@
 use crate::atomic_file::AtomicFile;
 use crate::bag_scene::scene_of;
 use crate::failure::Failure;
+use crate::replay_motion::damage_notes;
 use crate::stdout::say;
 use bag::msg::ServoConfiguration;
 use bag::{BagReader, FeatureBook, Segment, SegmentOptions, Segmenter, StateGraph, Ticks};
@@ -46,7 +47,7 @@ fn not_negative(text: &str) -> Result<f64, String> {
 /// `bag segment`: the contact states of a run as CSV.
 pub fn segment(dir: &Path, out: &Path, cut: &Cut) -> Result<(), Failure> {
     let run = Run::read(dir, cut)?;
-    let mut csv = AtomicFile::create(out)?;
+    let mut csv = AtomicFile::create(out, &[])?;
     csv.write("t_begin,t_end,formation,principal_contacts,mean_force_n,max_force_n,work_j,mean_torque_nm,max_torque_nm,max_depth_m,ticks\n")?;
     for segment in &run.segments {
         let s = &segment.statistics;
@@ -66,9 +67,7 @@ pub fn segment(dir: &Path, out: &Path, cut: &Cut) -> Result<(), Failure> {
         ))?;
     }
     csv.finish()?;
-    for damage in &run.damage {
-        say(&format!("damage  {damage}"))?;
-    }
+    run.damage.iter().try_for_each(|d| say(d))?;
     say(&format!("{} contact states", run.segments.len()))
 }
 
@@ -92,7 +91,7 @@ pub fn graph(dirs: &[PathBuf], out: &Path, cut: &Cut) -> Result<(), Failure> {
         scene = scene.or(run.scene_hash.map(|hash| (hash, dir.as_path())));
         graph.add(&run.segments);
     }
-    let mut file = AtomicFile::create(out)?;
+    let mut file = AtomicFile::create(out, &[])?;
     file.write(&if is_json { graph.to_json() } else { graph.to_dot() })?;
     file.finish()?;
     let transitions: u64 = graph.transitions.values().sum();
@@ -123,7 +122,7 @@ impl Run {
             segments.extend(change.and_then(|c| c.ended));
         }
         segments.extend(segmenter.finish());
-        let damage = ticks.damage().iter().map(|d| format!("{} at byte {}: {}", d.file, d.offset, d.what)).collect();
+        let damage = damage_notes(ticks.damage());
         Ok(Self { segments, scene_hash: description.map(|d| d.sha256), damage })
     }
 }

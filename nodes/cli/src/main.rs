@@ -2,6 +2,7 @@
 
 mod atomic_file;
 mod bag;
+mod bag_out;
 mod bag_scene;
 mod bag_segment;
 mod bag_summary;

@@ -1,10 +1,11 @@
 use crate::atomic_file::AtomicFile;
+use crate::bag_out::BagOut;
 use crate::csv_io::read_text;
 use crate::failure::Failure;
 use crate::replay_motion::Motion;
 use crate::stdout::say;
 use crate::step_time::StepTime;
-use bag::msg::{SceneDescription, ServoConfiguration};
+use bag::first_difference;
 use haptics::LawKind;
 use scene::Scene;
 use servo::{Config, Tick, TickRecord};
@@ -26,6 +27,9 @@ pub struct Args {
     /// A bag with ticks, which are rendered again bit for bit, or with poses.
     #[arg(long)]
     pub bag: Option<PathBuf>,
+    /// The bag's topic of ticks or poses, if it holds several.
+    #[arg(long, requires = "bag")]
+    pub topic: Option<String>,
     /// CSV to write.
     #[arg(long)]
     pub out: PathBuf,
@@ -85,7 +89,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let mut motion = match (&args.poses, &args.bag) {
         (Some(csv), _) => Motion::from_csv(csv, &config)?,
-        (None, Some(dir)) => Motion::from_bag(dir, &config)?,
+        (None, Some(dir)) => Motion::from_bag(dir, args.topic.as_deref(), &config)?,
         // The argument group asks for one of them.
         (None, None) => return Err(Failure::plain("neither --poses nor --bag")),
     };
@@ -98,6 +102,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let scene = load_scene(args, &motion)?;
     let records = render(args, &scene, &config, &motion)?;
+    motion.notes.iter().try_for_each(|note| say(note))?;
     compare(&motion.recorded, &records)?;
     if args.time {
         let time = StepTime::measure_from(|| Tick::new(&scene, &config), &motion.inputs, Tick::step);
@@ -118,9 +123,11 @@ fn load_scene(args: &Args, motion: &Motion) -> Result<Scene, Failure> {
     motion.own_scene(dir)?.ok_or_else(|| Failure::file(dir, "the bag holds no scene: name one with --scene"))
 }
 
-/// Renders all ticks and writes what was asked for; the CSV appears last, when all the rest went well.
+/// Renders all ticks and writes what was asked for; CSV and bag appear last, when all the rest went well.
 fn render(args: &Args, scene: &Scene, config: &Config, motion: &Motion) -> Result<Vec<TickRecord>, Failure> {
-    let mut out = AtomicFile::create(&args.out)?;
+    let inputs: Vec<&Path> =
+        [&args.scene, &args.poses, &args.params].into_iter().flatten().map(PathBuf::as_path).collect();
+    let mut out = AtomicFile::create(&args.out, &inputs)?;
     out.write(HEADER)?;
     let mut tick = Tick::new(scene, config);
     let mut row = String::with_capacity(512);
@@ -132,22 +139,14 @@ fn render(args: &Args, scene: &Scene, config: &Config, motion: &Motion) -> Resul
         out.write(&row)?;
         records.push(record);
     }
-    if let Some(dir) = &args.bag_out {
-        write_bag(dir, scene, config, &records)?;
-    }
+    let bag = args.bag_out.as_ref().map(|dir| BagOut::write(dir, scene, config, &records)).transpose()?;
     #[cfg(feature = "inspect")]
     if let Some(rrd) = &args.rrd {
         crate::rrd::record(rrd, scene, &records)?;
     }
     out.finish()?;
+    bag.map_or(Ok(()), BagOut::finish)?;
     Ok(records)
-}
-
-fn write_bag(dir: &Path, scene: &Scene, config: &Config, records: &[TickRecord]) -> Result<(), Failure> {
-    let files = scene.bundle.files.iter().map(|(path, data)| (path.clone(), data.clone()));
-    let description = SceneDescription::new(&scene.name, &config.frame_id, &scene.bundle.yaml, files);
-    let configuration = ServoConfiguration::new(&scene.name, &config.frame_id, &config.to_yaml());
-    bag::write_ticks(dir, &description, &configuration, records).map_err(Failure::plain)
 }
 
 fn format_row(row: &mut String, t: f64, record: &TickRecord) {
@@ -166,25 +165,24 @@ fn compare(recorded: &[TickRecord], rendered: &[TickRecord]) -> Result<(), Failu
     if recorded.is_empty() {
         return Ok(());
     }
-    let (mut differing, mut first) = (0usize, None);
+    let (mut differing, mut other_formation, mut first) = (0usize, 0usize, None);
     let (mut force, mut torque, mut depth) = (0.0f64, 0.0f64, 0.0f64);
     for (old, new) in recorded.iter().zip(rendered) {
-        // Bit for bit, NaN and the sign of zero included; what was measured is no part of it.
-        let measured = TickRecord { wakeup_ns: old.wakeup_ns, compute_ns: old.compute_ns, ..*new };
-        if format!("{measured:?}") != format!("{old:?}") {
-            differing += 1;
-            first.get_or_insert(old.input.sequence);
-            force = force.max((old.out_wrench.force - new.out_wrench.force).length());
-            torque = torque.max((old.out_wrench.torque - new.out_wrench.torque).length());
-            depth = depth.max((old.depth - new.depth).abs());
-        }
+        // The input is the recorded one, but for the law where another was asked for: that is no difference in itself.
+        let Some(field) = first_difference(old, &TickRecord { input: old.input, ..*new }) else { continue };
+        differing += 1;
+        other_formation += usize::from(old.formation.kind != new.formation.kind);
+        first.get_or_insert((old.input.sequence, field));
+        force = force.max((old.out_wrench.force - new.out_wrench.force).length());
+        torque = torque.max((old.out_wrench.torque - new.out_wrench.torque).length());
+        depth = depth.max((old.depth - new.depth).abs());
     }
     let n = recorded.len();
     match first {
         None => say(&format!("{n} ticks, all identical to the recorded ones")),
-        Some(first) => say(&format!(
-            "{n} ticks, {differing} differ from the recorded ones, first at tick {first}; \
-             at most {force:.3e} N, {torque:.3e} N.m, depth {depth:.3e} m"
+        Some((first, field)) => say(&format!(
+            "{n} ticks, {differing} differ from the recorded ones, first at tick {first} in {field}; \
+             at most {force:.3e} N, {torque:.3e} N.m, depth {depth:.3e} m; another formation in {other_formation} ticks"
         )),
     }
 }

@@ -1,7 +1,8 @@
 use crate::bag_scene::scene_of;
 use crate::csv_io::read_poses;
 use crate::failure::Failure;
-use bag::msg::{SceneDescription, ServoConfiguration};
+use bag::msg::{Message, PoseStamped, SceneDescription, ServoConfiguration, TickBatch};
+use bag::{BagError, BagReader, Damage, TickLog};
 use scene::Scene;
 use servo::{Config, TickInput, TickRecord};
 use spatial::{Pose, Stamp};
@@ -19,6 +20,8 @@ pub struct Motion {
     pub scene: Option<SceneDescription>,
     /// The configuration of the bag, if it holds one.
     pub configuration: Option<ServoConfiguration>,
+    /// What is wrong with the bag, in words.
+    pub notes: Vec<String>,
 }
 
 impl Motion {
@@ -29,31 +32,40 @@ impl Motion {
         Ok(Self::from_poses(&poses, config))
     }
 
-    /// A bag of ticks, or else of anyone's poses.
-    pub fn from_bag(dir: &Path, config: &Config) -> Result<Self, Failure> {
-        match bag::read_ticks(dir, None) {
-            Ok(log) if !log.ticks.is_empty() => Ok(Self {
-                inputs: log.ticks.iter().map(|t| t.input).collect(),
-                times: log.ticks.iter().map(|t| seconds(t.input.stamp)).collect(),
-                recorded: log.ticks,
-                scene: log.scene,
-                configuration: log.configuration,
-            }),
-            ticks => {
-                let log = match (bag::read_poses(dir, None), ticks) {
-                    (Ok(log), _) => log,
-                    // What is wrong with the ticks says more, where there are any.
-                    (Err(e), Ok(_)) | (Err(_), Err(e)) => return Err(Failure::plain(e)),
-                };
-                if let Some((_, pose)) = log.poses.iter().find(|(_, p)| !p.is_valid()) {
-                    return Err(Failure::file(dir, format!("{}: {pose:?} is no pose", log.topic)));
-                }
-                if log.poses.is_empty() {
-                    return Err(Failure::file(dir, "holds neither ticks nor poses"));
-                }
-                let poses: Vec<_> = log.poses.iter().map(|(s, p)| (seconds(*s), *s, *p)).collect();
-                Ok(Self::from_poses(&poses, config))
-            }
+    /// A bag of ticks, or else of anyone's poses; `topic` chooses between several.
+    pub fn from_bag(dir: &Path, topic: Option<&str>, config: &Config) -> Result<Self, Failure> {
+        let ticks = match bag::read_ticks(dir, topic) {
+            Ok(log) if !log.ticks.is_empty() => return Ok(Self::from_ticks(log)),
+            other => other,
+        };
+        let log = match (bag::read_poses(dir, topic), ticks) {
+            (Ok(log), _) => log,
+            // Of a bag without ticks one wants to know what is wrong with its poses.
+            (Err(poses), Err(ticks)) => return Err(no_motion(dir, topic, &ticks, &poses)),
+            (Err(poses), Ok(_)) => return Err(Failure::plain(poses)),
+        };
+        if let Some((_, pose)) = log.poses.iter().find(|(_, p)| !p.is_valid()) {
+            return Err(Failure::file(dir, format!("{}: {pose:?} is no pose", log.topic)));
+        }
+        if log.poses.is_empty() {
+            return Err(Failure::file(dir, "holds neither ticks nor poses"));
+        }
+        let poses: Vec<_> = log.poses.iter().map(|(s, p)| (seconds(*s), *s, *p)).collect();
+        Ok(Self { notes: damage_notes(&log.damage), ..Self::from_poses(&poses, config) })
+    }
+
+    fn from_ticks(log: TickLog) -> Self {
+        let mut notes = damage_notes(&log.damage);
+        if log.missing > 0 {
+            notes.push(format!("gap     {} ticks are missing: what follows them cannot be identical", log.missing));
+        }
+        Self {
+            inputs: log.ticks.iter().map(|t| t.input).collect(),
+            times: log.ticks.iter().map(|t| seconds(t.input.stamp)).collect(),
+            recorded: log.ticks,
+            scene: log.scene,
+            configuration: log.configuration,
+            notes,
         }
     }
 
@@ -77,6 +89,7 @@ impl Motion {
             recorded: Vec::new(),
             scene: None,
             configuration: None,
+            notes: Vec::new(),
         }
     }
 
@@ -90,4 +103,26 @@ impl Motion {
 /// Divided, not multiplied: the nearest number to the decimal one, which reads back from a CSV of poses.
 fn seconds(stamp: Stamp) -> f64 {
     stamp.0 as f64 / 1e9
+}
+
+/// Why neither ticks nor poses were found.
+fn no_motion(dir: &Path, topic: Option<&str>, ticks: &BagError, poses: &BagError) -> Failure {
+    let names = |type_name: &str| -> Vec<String> {
+        let Ok(reader) = BagReader::open(dir) else { return Vec::new() };
+        reader.topics_of(type_name).iter().map(|&i| reader.topics()[i].name.clone()).collect()
+    };
+    let (of_ticks, of_poses) = (names(TickBatch::NAME), names(PoseStamped::NAME));
+    match topic {
+        Some(t) if !of_ticks.is_empty() && !of_ticks.iter().chain(&of_poses).any(|n| n == t) => {
+            let all = [of_ticks, of_poses].concat().join(", ");
+            Failure::file(dir, format!("no ticks or poses on {t}; choose one of {all} (--topic)"))
+        }
+        _ if of_ticks.is_empty() => Failure::plain(poses),
+        _ => Failure::plain(ticks),
+    }
+}
+
+/// What could not be read of a bag, a line each.
+pub fn damage_notes(damage: &[Damage]) -> Vec<String> {
+    damage.iter().map(|d| format!("damage  {} at byte {}: {}", d.file, d.offset, d.what)).collect()
 }

@@ -39,7 +39,7 @@ const HEADER: &str = "t,distance,type,feature_a,feature_b,nx,ny,nz,formation,con
 pub fn run(args: &Args) -> Result<(), Failure> {
     let (a, b) = (read_polyhedron(&args.moving)?, read_polyhedron(&args.fixed)?);
     let poses = read_poses(&args.poses)?;
-    let mut out = AtomicFile::create(&args.out)?;
+    let mut out = AtomicFile::create(&args.out, &[&args.moving, &args.fixed, &args.poses])?;
     out.write(HEADER)?;
     let fresh = Tracker::new(a.clone(), b.clone());
     let mut tracker = fresh.clone();

@@ -104,7 +104,7 @@ fn the_same_motion_gives_the_same_bytes_and_so_does_its_bag() {
     // The same motion under another law: the same hand, another answer, and it says so.
     let output = run(&["replay", "--bag", text(&bag), "--out", text(&out), "--law", "paper"]);
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(output.status.success() && said.contains("differ from the recorded ones, first at tick 0"), "{said}");
+    assert!(output.status.success() && said.contains(" differ from the recorded ones, first at tick "), "{said}");
 }
 
 #[test]

@@ -1,0 +1,103 @@
+//! What `replay` takes from bags of poses, and what it leaves behind when something is wrong.
+
+use bag::msg::{Header, PoseStamped};
+use bag::{BagOptions, BagWriter, Qos};
+use spatial::{DQuat, DVec3, Pose, Stamp};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn scene() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config/scenes/peg_in_hole/scene.yaml")
+}
+
+fn replay(args: &[&Path]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cspace-haptics"));
+    command.arg("replay").args(args).output().unwrap()
+}
+
+fn error(output: &Output) -> String {
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.starts_with("error: ") && said.lines().count() == 1, "{said}");
+    said
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        folder.read_dir().unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// Someone's bag: the peg goes down on `/left/tool`, stays up on `/right/tool`.
+fn two_arms(dir: &Path) {
+    let mut writer = BagWriter::create(dir, BagOptions::default()).unwrap();
+    let topics = ["/left/tool", "/right/tool"].map(|t| writer.add::<PoseStamped>(t, &[Qos::SENSOR_DATA]).unwrap());
+    for i in 0..100i64 {
+        let stamp = Stamp(1_700_000_000_000_000_000 + i * 1_000_000);
+        for (k, &topic) in topics.iter().enumerate() {
+            let z = if k == 0 { 0.016 - 2e-5 * i as f64 } else { 0.02 };
+            let pose = Pose::new(DVec3::new(0.018, 0.0, z), DQuat::IDENTITY);
+            let header = Header { stamp: stamp.into(), frame_id: "world".into() };
+            writer.write_message(topic, stamp, &PoseStamped { header, pose: pose.into() }).unwrap();
+        }
+    }
+    writer.finish().unwrap();
+}
+
+#[test]
+fn of_several_topics_of_poses_one_is_chosen_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let (bag, out, scene) = (folder.path().join("arms"), folder.path().join("o.csv"), scene());
+    two_arms(&bag);
+    let p = Path::new;
+    let run = |more: &[&Path]| {
+        let mut args = vec![p("--scene"), scene.as_path(), p("--bag"), bag.as_path(), p("--out"), out.as_path()];
+        args.extend(more);
+        replay(&args)
+    };
+    let said = error(&run(&[]));
+    assert!(said.contains("poses on several topics; choose one of /left/tool, /right/tool (--topic)"), "{said}");
+    let said = error(&run(&[p("--topic"), p("/none")]));
+    assert!(said.contains("no poses on /none; choose one of /left/tool, /right/tool (--topic)"), "{said}");
+    assert!(!out.exists());
+    for (topic, touches) in [("/left/tool", true), ("/right/tool", false)] {
+        let output = run(&[p("--topic"), p(topic)]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let csv = std::fs::read_to_string(&out).unwrap();
+        assert_eq!(csv.lines().count(), 101);
+        assert_eq!(csv.contains(",face-face,"), touches, "{topic}");
+    }
+}
+
+#[test]
+fn outputs_are_whole_or_not_there_and_errors_name_the_users_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let (poses, scene, bag) = (at("p.csv"), scene(), at("bag"));
+    let text = "t,x,y,z,qx,qy,qz,qw\n0,0,0,0.02,0,0,0,1\n0.001,0,0,0.02,0,0,0,1\n0.001,9e9,0,-9e9,0,0,0,1\n1,0,0,0,1,0,0,0\n";
+    std::fs::write(&poses, text).unwrap();
+    std::fs::create_dir(at("taken")).unwrap();
+    let p = Path::new;
+    let run = |out: &Path, bag: &Path| {
+        let (scene, poses) = (scene.as_path(), poses.as_path());
+        replay(&[p("--scene"), scene, p("--poses"), poses, p("--out"), out, p("--bag-out"), bag])
+    };
+    for (out, bag, reason) in [
+        (at("no/o.csv"), bag.clone(), "no/o.csv: cannot be written: No such file or directory"),
+        (at("taken"), bag.clone(), "taken: is a folder, not a file to write"),
+        (at("p.csv"), bag.clone(), "p.csv: is read by this command: name another file to write"),
+        (at("o.csv"), at("taken"), "taken: exists already; name a new folder for the bag"),
+        (at("o.csv"), at("p.csv/bag"), "p.csv/bag: cannot be written: "),
+    ] {
+        let said = error(&run(&out, &bag));
+        assert!(said.contains(reason) && !said.contains(".cspace-haptics-"), "{said}");
+        assert_eq!(names(folder.path()), ["p.csv", "taken"], "{said}");
+        assert_eq!(std::fs::read_to_string(&poses).unwrap(), text);
+    }
+    // Jumps and moments twice are motions like others; they show in the health.
+    let output = run(&at("o.csv"), &bag);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(names(folder.path()), ["bag", "o.csv", "p.csv", "taken"]);
+    assert_eq!(names(&bag), ["bag_0.mcap", "metadata.yaml"]);
+}
