@@ -8,6 +8,7 @@ use device::{HapticDevice, Sample};
 use r2r::diagnostic_msgs::msg::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use r2r::std_srvs::srv::SetBool;
 use r2r::{ParameterValue as V, Publisher, QosProfile, ServiceRequest};
+use realtime::ThreadSetup;
 use scene::Scene;
 use servo::config::Config;
 use spatial::{Stamp, Twist, Wrench};
@@ -42,6 +43,10 @@ pub fn declared() -> Vec<Declared> {
         )
         .within(0.002, 1.0)
         .live(),
+    );
+    all.push(
+        Declared::fixed("realtime.priority", V::Integer(70), "SCHED_FIFO priority of the loop; 0 for none")
+            .within(0.0, 99.0),
     );
     all
 }
@@ -128,6 +133,11 @@ impl DeviceNode {
     /// # Errors
     /// The middleware fails; the force is gone in any case.
     pub fn run(mut self) -> Outcome<()> {
+        let priority = self.parameters.number("realtime.priority") as u8;
+        let grants = ThreadSetup { priority, cpu: -1, lock_memory: false }.apply();
+        if !grants.all_granted() {
+            self.host.warn(&format!("real time: {grants}"));
+        }
         self.host.say_ready();
         let outcome = self.turns();
         self.device.write(&Wrench::ZERO);
