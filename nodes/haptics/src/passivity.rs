@@ -7,6 +7,9 @@ const SURPLUS: f64 = 1e-6;
 /// The most that the account of the remote side may hold, J: what the hand stored there may come back.
 const REMOTE_SURPLUS: f64 = 1.0;
 
+/// Wrenches that may be on their way to the hand: a longer delay than so many ticks, less two, is booked as this one.
+const ON_THE_WAY: usize = 16;
+
 /// How the controller may act.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassivityLimits {
@@ -16,6 +19,8 @@ pub struct PassivityLimits {
     pub lever: f64,
     /// Energy owed beyond which it cannot keep up, J.
     pub budget: f64,
+    /// Delay between measuring and showing beyond the hold of a tick, s.
+    pub delay: f64,
 }
 
 /// Motion of the hand during one tick: metres and rotation vector, axes of W.
@@ -25,6 +30,18 @@ pub struct Displacement {
     pub linear: DVec3,
     /// Rad.
     pub angular: DVec3,
+}
+
+/// What the coupling holds, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Held {
+    /// Energy that the hand can get back.
+    pub stored: f64,
+    /// How much of its change came or went by the ramp and not by the hand.
+    pub ramped: f64,
+    /// A loss that one step of the encoders may feign: `k/2` of it squared. A hand that rests on the edge between two steps
+    /// would else be booked as giving and getting that much again and again.
+    pub unsure: f64,
 }
 
 /// Passivity observer and controller in the time domain (Hannaford and Ryu 2002), translation and rotation in one account.
@@ -39,20 +56,30 @@ pub struct Passivity {
     account: f64,
     remote: f64,
     stored: f64,
-    /// Shown during the last tick: by the contact, and by the remote side.
-    local_wrench: Wrench,
-    remote_wrench: Wrench,
+    /// Shown by the contact and by the remote side, newest first.
+    shown: [(Wrench, Wrench); ON_THE_WAY],
 }
 
 impl Passivity {
-    /// Books a tick: the hand moved by `moved` against the wrench shown since the last tick, and the coupling now holds
-    /// `stored` J, of which `ramped` J came or went by the ramp and not by the hand.
-    pub fn observe(&mut self, moved: &Displacement, stored: f64, ramped: f64, limits: &PassivityLimits) {
-        self.account -= work(&self.local_wrench, moved) + (stored - self.stored - ramped);
-        self.remote -= work(&self.remote_wrench, moved);
+    /// Books a tick of `dt` seconds: the hand moved by `moved` against the wrench that reached it meanwhile, and this is what
+    /// the coupling now holds.
+    pub fn observe(&mut self, moved: &Displacement, held: &Held, dt: f64, limits: &PassivityLimits) {
+        let (local, remote) = self.felt(limits.delay / dt);
+        let loss = work(&local, moved) + (held.stored - self.stored - held.ramped);
+        self.account -= if loss > 0.0 { (loss - held.unsure).max(0.0) } else { loss };
+        self.remote -= work(&remote, moved);
         self.account = self.account.clamp(-limits.budget, SURPLUS);
         self.remote = self.remote.clamp(-limits.budget, REMOTE_SURPLUS);
-        self.stored = stored;
+        self.stored = held.stored;
+    }
+
+    /// What the hand felt during the last tick, on average, if it comes `ticks` late.
+    fn felt(&self, ticks: f64) -> (Wrench, Wrench) {
+        let ticks = ticks.clamp(0.0, (ON_THE_WAY - 2) as f64);
+        let (whole, part) = (ticks as usize, ticks.fract());
+        let (new, old) = (self.shown[whole], self.shown[whole + 1]);
+        let mean = |new: Wrench, old: Wrench| new * (1.0 - part) + old * part;
+        (mean(new.0, old.0), mean(new.1, old.1))
     }
 
     /// Energy owed by the loop, J, `>= 0`.
@@ -67,9 +94,9 @@ impl Passivity {
         if self.owed() > 0.0 { -self.owed() } else { self.account }
     }
 
-    /// The damping wrench that pays within a tick of `dt` seconds, at the rate of `moved`, what is owed and what a spring
-    /// of `stiffness` (N/m, 0 when free) and `rotation_stiffness` (N.m/rad) loses by being held over that tick, as far
-    /// as `limits` let it.
+    /// The damping wrench at the rate of `moved`, the hand's motion in a tick of `dt` seconds, as far as `limits` let it. It
+    /// pays what a spring of `stiffness` (N/m, 0 when free) and `rotation_stiffness` (N.m/rad) loses by being held over
+    /// the tick and by coming late, each in its own motion, and in a tick what is owed, in both.
     #[must_use]
     pub fn control(
         &self,
@@ -81,19 +108,23 @@ impl Passivity {
         let (v, w) = (moved.linear / dt, moved.angular / dt);
         let lever2 = limits.lever * limits.lever;
         let square = v.length_squared() + lever2 * w.length_squared();
-        let coming = stiffness * moved.linear.length_squared() + rotation_stiffness * moved.angular.length_squared();
-        let owed = self.owed() + 0.5 * coming;
-        if owed <= 0.0 || square <= 0.0 {
-            return Wrench::ZERO;
-        }
-        let damping = (owed / (dt * square)).min(limits.max_damping);
-        Wrench::new(v * -damping, w * (-damping * lever2))
+        let paying = if square > 0.0 { self.owed() / (dt * square) } else { 0.0 };
+        let late = 0.5 * dt + limits.delay;
+        // In contact no more for what is owed than for the hold: an encoder step must not be answered by a blow.
+        let in_contact = stiffness > 0.0;
+        let damping = |held: f64| {
+            let paying = if in_contact { paying.min(held) } else { paying };
+            (held + paying).min(limits.max_damping)
+        };
+        let rotation_damping = damping(rotation_stiffness * late / lever2) * lever2;
+        let damping = damping(stiffness * late);
+        Wrench::new(v * -damping, w * -rotation_damping)
     }
 
     /// Takes note of what is shown during the coming tick: the contact's part and the remote side's.
     pub fn shown(&mut self, local: Wrench, remote: Wrench) {
-        self.local_wrench = local;
-        self.remote_wrench = remote;
+        self.shown.rotate_right(1);
+        self.shown[0] = (local, remote);
     }
 
     /// Whether the controller cannot keep up: the budget is used up.
@@ -129,9 +160,13 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const LIMITS: PassivityLimits = PassivityLimits { max_damping: 50.0, lever: 0.03, budget: 1e-2 };
+    const LIMITS: PassivityLimits = PassivityLimits { max_damping: 50.0, lever: 0.03, budget: 1e-2, delay: 0.0 };
     const K: f64 = 1000.0;
     const DT: f64 = 1e-3;
+
+    fn held(stored: f64) -> Held {
+        Held { stored, ..Held::default() }
+    }
 
     /// A mass on a sampled wall: greatest energy that came out of the wall, J, and the mass's last speed.
     fn bounce(mass: f64, speed: f64, controlled: bool) -> (f64, f64) {
@@ -143,7 +178,7 @@ mod tests {
             let depth = f64::max(0.0, -z);
             let moved = Displacement { linear: DVec3::Z * (z - last_z), angular: DVec3::ZERO };
             last_z = z;
-            p.observe(&moved, 0.5 * K * depth * depth, 0.0, &LIMITS);
+            p.observe(&moved, &held(0.5 * K * depth * depth), DT, &LIMITS);
             let damping = if controlled {
                 p.control(&moved, (if depth > 0.0 { K } else { 0.0 }, 0.0), DT, &LIMITS)
             } else {
@@ -177,13 +212,44 @@ mod tests {
     fn a_change_of_stiffness_in_contact_is_owed() {
         let mut p = Passivity::default();
         let still = Displacement::default();
-        p.observe(&still, 0.0, 0.0, &LIMITS);
-        p.observe(&still, 1e-3, 0.0, &LIMITS);
+        p.observe(&still, &held(0.0), DT, &LIMITS);
+        p.observe(&still, &held(1e-3), DT, &LIMITS);
         assert!((p.owed() - 1e-3).abs() < 1e-15);
         // By the ramp it is not: the hand asked for force.
         let mut p = Passivity::default();
-        p.observe(&still, 1e-3, 1e-3, &LIMITS);
+        p.observe(&still, &Held { ramped: 1e-3, ..held(1e-3) }, DT, &LIMITS);
         assert_eq!(p.owed(), 0.0);
+    }
+
+    #[test]
+    fn wrenches_are_booked_when_they_are_felt() {
+        let late = PassivityLimits { delay: 1.5 * DT, ..LIMITS };
+        let mut p = Passivity::default();
+        let push = Wrench::new(DVec3::X, DVec3::ZERO);
+        let moved = Displacement { linear: DVec3::X * 1e-3, angular: DVec3::ZERO };
+        let mut owed = Vec::new();
+        for _ in 0..4 {
+            p.observe(&moved, &held(0.0), DT, &late);
+            owed.push((p.owed() * 1e6).round() as i64);
+            p.shown(push, Wrench::ZERO);
+        }
+        // Shown at the first tick: half of it is felt in the third.
+        assert_eq!(owed, [0, 0, 500, 1500]);
+    }
+
+    #[test]
+    fn a_step_of_the_encoders_is_not_booked_as_loss() {
+        let step = 1e-5;
+        let mut p = Passivity::default();
+        for i in 0..1000 {
+            let down = i % 2 == 0;
+            let depth = if down { step } else { 0.0 };
+            let moved = Displacement { linear: DVec3::Z * if down { -step } else { step }, angular: DVec3::ZERO };
+            let unsure = 0.5 * K * step * step;
+            p.observe(&moved, &Held { unsure, ..held(0.5 * K * depth * depth) }, DT, &LIMITS);
+            p.shown(Wrench::new(DVec3::Z * (K * depth), DVec3::ZERO), Wrench::ZERO);
+        }
+        assert!(p.owed() < 1e-15, "{}", p.owed());
     }
 
     proptest! {
@@ -197,7 +263,7 @@ mod tests {
                 let moved = Displacement { linear: DVec3::NEG_Z * (z - last), angular: DVec3::ZERO };
                 steps += 0.5 * K * (z - last) * (z - last);
                 last = z;
-                p.observe(&moved, 0.5 * K * z * z, 0.0, &LIMITS);
+                p.observe(&moved, &held(0.5 * K * z * z), DT, &LIMITS);
                 p.shown(Wrench::new(DVec3::Z * (K * z), DVec3::ZERO), Wrench::ZERO);
                 owed = owed.max(p.owed());
             }
@@ -207,7 +273,7 @@ mod tests {
         #[test]
         fn the_controller_only_takes(x in -1.0..1.0, y in -1.0..1.0, w in -1.0..1.0, owed in 0.0..1.0) {
             let mut p = Passivity::default();
-            p.observe(&Displacement::default(), owed, 0.0, &PassivityLimits { budget: 10.0, ..LIMITS });
+            p.observe(&Displacement::default(), &held(owed), DT, &PassivityLimits { budget: 10.0, ..LIMITS });
             let moved = Displacement { linear: DVec3::new(x, y, 0.0) * 1e-3, angular: DVec3::Z * w * 1e-2 };
             let wrench = p.control(&moved, (0.0, 0.0), DT, &LIMITS);
             let taken = -work(&wrench, &moved);

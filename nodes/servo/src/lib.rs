@@ -16,6 +16,7 @@ mod sample_count;
 mod servo_handle;
 mod servo_loop;
 mod stability;
+mod stretching;
 mod tick;
 
 pub use aligned_device::AlignedDevice;
@@ -26,5 +27,5 @@ pub use loop_status::LoopStatus;
 pub use operator_scene::operator_plan;
 pub use record::{TickInput, TickRecord};
 pub use servo_handle::{LoopConfig, LoopError, Servo, ServoHandle, spawn};
-pub use stability::{StabilityFinding, check_stability, stability_findings};
+pub use stability::{MotionKind, RenderedMotion, StabilityFinding, check_stability, stability_findings};
 pub use tick::{Tick, renderer};

@@ -1,9 +1,9 @@
-use crate::Health;
-use crate::config::PassivityConfig;
+use crate::stretching::Stretching;
+use crate::{Config, Health};
 use haptics::{
-    Coupling, Displacement, Gains, LawKind, LawOutput, Limiter, Passivity, PassivityLimits, returnable_energy,
+    Coupling, Displacement, Gains, Held, LawKind, LawOutput, Limiter, Passivity, PassivityLimits, returnable_energy,
 };
-use spatial::{DVec3, Pose, Twist, Wrench};
+use spatial::{Pose, Twist, Wrench};
 
 /// Time in which force fades when the clutch is taken, s.
 const CLUTCH_FADE: f64 = 0.02;
@@ -40,12 +40,6 @@ pub struct Rendered<'a> {
     pub cutoff: f64,
 }
 
-/// The part of a motion along a force, all of it if there is none: sliding along a face is not to be slowed down.
-fn along(motion: DVec3, force: DVec3) -> DVec3 {
-    let square = force.length_squared();
-    if square > 0.0 { force * (motion.dot(force) / square) } else { motion }
-}
-
 /// From the law's wrench to the device's: damping, ramp, passivity, limits, and nothing at all when anything is wrong.
 pub struct Output {
     coupling: Coupling,
@@ -55,23 +49,30 @@ pub struct Output {
     ramp: f64,
     relief: f64,
     share: f64,
+    stretching: Stretching,
+    /// Steps of the encoders, metres and rad.
+    resolution: (f64, f64),
 }
 
 impl Output {
     /// No force yet.
-    pub fn new(config: &PassivityConfig) -> Self {
+    pub fn new(config: &Config) -> Self {
+        let passivity = &config.passivity;
         Self {
             coupling: Coupling::default(),
             passivity: Passivity::default(),
             passivity_limits: PassivityLimits {
-                max_damping: config.max_damping,
-                lever: config.lever,
-                budget: config.budget,
+                max_damping: passivity.max_damping,
+                lever: passivity.lever,
+                budget: passivity.budget,
+                delay: config.stability.delay,
             },
             limiter: Limiter::default(),
             ramp: 0.0,
             relief: 1.0,
             share: 0.0,
+            stretching: Stretching::default(),
+            resolution: (config.stability.resolution, config.stability.angular_resolution),
         }
     }
 
@@ -79,6 +80,7 @@ impl Output {
     pub fn step(&mut self, r: &Rendered<'_>, gains: &Gains, dt: f64, health: &mut Health) -> Wrench {
         if r.restart {
             self.coupling.reset();
+            self.stretching = Stretching::default();
         }
         let damping = self.coupling.damping(r.law, r.hip, r.twist, gains, dt, r.cutoff);
         if !r.remote.is_finite() {
@@ -115,11 +117,23 @@ impl Output {
 
     /// Books the tick and gives what the passivity controller adds.
     fn control(&mut self, r: &Rendered<'_>, gains: &Gains, dt: f64, health: &mut Health) -> Wrench {
+        self.stretching.step(r.hip, r.law, gains.law, dt);
         let limits = self.passivity_limits;
         let returnable = returnable_energy(r.law.energy, &r.law.wrench, gains, r.scale);
         let last_share = std::mem::replace(&mut self.share, self.ramp * self.relief);
         let ramped = (self.share - last_share) * returnable;
-        self.passivity.observe(r.moved, self.share * returnable, ramped, &limits);
+        let stiffness = if returnable > 0.0 {
+            let turn = match gains.law {
+                LawKind::Proxy => gains.rotation_stiffness,
+                _ => self.stretching.rotation_stiffness(),
+            };
+            (self.share * gains.stiffness * r.scale, self.share * turn)
+        } else {
+            (0.0, 0.0)
+        };
+        let unsure = 0.5 * (stiffness.0 * self.resolution.0.powi(2) + stiffness.1 * self.resolution.1.powi(2));
+        let held = Held { stored: self.share * returnable, ramped, unsure };
+        self.passivity.observe(r.moved, &held, dt, &limits);
         if !gains.passivity {
             self.relief = 1.0;
             return Wrench::ZERO;
@@ -130,21 +144,11 @@ impl Output {
         } else {
             (self.relief + dt / RELIEF_RETURN).min(1.0)
         };
-        let stiffness = if returnable > 0.0 {
-            let turn = if gains.law == LawKind::Proxy { gains.rotation_stiffness } else { 0.0 };
-            (self.share * gains.stiffness * r.scale, self.share * turn)
-        } else {
-            (0.0, 0.0)
-        };
         if r.clutched {
             // The hand is on its own way; what it moves is no motion of the part.
             return Wrench::ZERO;
         }
-        let along = Displacement {
-            linear: along(r.moving.linear, r.law.wrench.force),
-            angular: along(r.moving.angular, r.law.wrench.torque),
-        };
-        self.passivity.control(&along, stiffness, dt, &limits)
+        self.passivity.control(&self.stretching.part_of(r.moving), stiffness, dt, &limits)
     }
 
     /// No force at once, and from zero again afterwards.

@@ -1,31 +1,44 @@
 use crate::Config;
 use crate::config::StabilityPolicy;
-use haptics::LawKind;
+use haptics::{HoldDamping, LawKind, SampledLoop};
 use scene::Scene;
 use std::fmt;
 
 /// A bound of stability that the configuration does not keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StabilityFinding {
+    /// The loop of spring, hold, delay, virtual damping and passivity controller against the mass of the hand has a root
+    /// outside the unit circle: it runs away, whatever the hand does.
+    Unstable {
+        /// Which motion.
+        motion: MotionKind,
+        /// Stiffness, N/m or N.m/rad.
+        stiffness: f64,
+        /// The largest that comes to rest.
+        largest: f64,
+    },
+    /// So does the virtual damping alone: it comes late and filtered.
+    Damping {
+        /// Which motion.
+        motion: MotionKind,
+        /// Virtual damping, N.s/m or N.m.s/rad.
+        damping: f64,
+        /// The largest that comes to rest.
+        largest: f64,
+    },
     /// The sampled wall is active: `b < K (T/2 + t_d) + B` (Colgate and Schenkel 1997; a delay counts like half a period).
-    Stiffness {
-        /// Stiffness, N/m.
+    Active {
+        /// Which motion.
+        motion: MotionKind,
+        /// Stiffness, N/m or N.m/rad.
         stiffness: f64,
-        /// Greatest stiffness that the damping bears, N/m.
+        /// Greatest stiffness that the damping of device and hand bears.
         bearable: f64,
         /// Whether the passivity controller is there to make up for it.
         controlled: bool,
     },
-    /// The same for the rotation.
-    RotationStiffness {
-        /// Rotational stiffness, N.m/rad.
-        stiffness: f64,
-        /// Greatest rotational stiffness that the damping bears, N.m/rad.
-        bearable: f64,
-        /// Whether the passivity controller is there to make up for it.
-        controlled: bool,
-    },
-    /// Law `blended`: a face that lies flat turns as stiffly as `2 F L^2 / delta`, which needs `delta > F L^2 T / b`.
+    /// Law `blended`: a face that lies flat turns as stiffly as `2 F L^2 / delta`, which needs
+    /// `delta > 2 F L^2 (T/2 + t_d) / b`.
     BlendDepth {
         /// Depth over which contacts fade, metres.
         blend_depth: f64,
@@ -34,64 +47,153 @@ pub enum StabilityFinding {
     },
 }
 
+/// Which motion a bound is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionKind {
+    /// Translation: N/m, N.s/m.
+    Translation,
+    /// Rotation: N.m/rad, N.m.s/rad.
+    Rotation,
+}
+
+impl MotionKind {
+    /// Parameters of stiffness and damping, and the unit of the former.
+    fn names(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::Translation => ("gains.stiffness", "gains.damping", "N/m"),
+            Self::Rotation => ("gains.rotation_stiffness", "gains.rotation_damping", "N.m/rad"),
+        }
+    }
+}
+
 impl fmt::Display for StabilityFinding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let rest = |controlled: bool| {
-            if controlled {
-                "the passivity controller has to make up for it"
-            } else {
-                "the contact will hum or run away"
-            }
-        };
         match *self {
-            Self::Stiffness { stiffness, bearable, controlled } => write!(
-                f,
-                "gains.stiffness = {stiffness} N/m: at this rate, delay and damping {bearable:.0} N/m is the bound; {}",
-                rest(controlled)
-            ),
-            Self::RotationStiffness { stiffness, bearable, controlled } => write!(
-                f,
-                "gains.rotation_stiffness = {stiffness} N.m/rad: at this rate, delay and damping {bearable:.3} N.m/rad is \
-                 the bound; {}",
-                rest(controlled)
-            ),
+            Self::Unstable { motion, stiffness, largest } => {
+                let (name, _, unit) = motion.names();
+                write!(
+                    f,
+                    "{name} = {stiffness} {unit}: the contact will run away; at this rate, delay, mass and damping \
+                     {largest:.3} {unit} is the largest that comes to rest"
+                )
+            }
+            Self::Damping { motion, damping, largest } => {
+                let (_, name, unit) = motion.names();
+                write!(
+                    f,
+                    "{name} = {damping} {unit}.s: damping that comes so late will run away by itself; {largest:.3} {unit}.s \
+                     is the largest that comes to rest"
+                )
+            }
+            Self::Active { motion, stiffness, bearable, controlled } => {
+                let (name, _, unit) = motion.names();
+                let rest = if controlled {
+                    "the passivity controller has to make up for it"
+                } else {
+                    "the contact may hum and give energy to the hand"
+                };
+                write!(
+                    f,
+                    "{name} = {stiffness} {unit}: at this rate, delay and damping {bearable:.3} {unit} is the bound; {rest}"
+                )
+            }
             Self::BlendDepth { blend_depth, needed } => write!(
                 f,
                 "gains.blend_depth = {blend_depth} m: a face lying flat will hum, {needed:.1e} m is the bound at this rate, \
-                 greatest force and rotational damping"
+                 delay, greatest force and rotational damping"
             ),
         }
     }
 }
 
-/// The bounds that a configuration does not keep, for a part of which contact points are at most `lever` metres from its
-/// origin. Damping is that of device and hand (`stability.*`); virtual damping counts against it, as Colgate and Schenkel
-/// have it: it comes late like the stiffness.
-#[must_use]
-pub fn stability_findings(config: &Config, lever: f64) -> Vec<StabilityFinding> {
-    let (g, s) = (&config.gains, &config.stability);
-    let period = config.realtime.period();
-    let hold = 0.5 * period + s.delay;
-    let mut findings = Vec::new();
-    let bearable = (s.damping - g.damping).max(0.0) / hold;
-    if g.stiffness > bearable {
-        findings.push(StabilityFinding::Stiffness { stiffness: g.stiffness, bearable, controlled: g.passivity });
+/// What a configuration renders in one motion, and against what, as the hand feels it.
+#[derive(Clone, Copy, Debug)]
+pub struct RenderedMotion {
+    /// Device, hand and sampling.
+    pub sampled: SampledLoop,
+    /// Stiffness and virtual damping at the hand.
+    pub stiffness: f64,
+    /// See `stiffness`.
+    pub damping: f64,
+    /// The passivity controller, if it acts.
+    pub controller: Option<HoldDamping>,
+    /// What the gains are multiplied by on the way to the hand.
+    scale: f64,
+}
+
+impl RenderedMotion {
+    /// What `config` makes of a motion.
+    #[must_use]
+    pub fn new(config: &Config, motion: MotionKind) -> Self {
+        let (g, s) = (&config.gains, &config.stability);
+        let sampled = |mass, damping| SampledLoop {
+            mass,
+            damping,
+            grip: 0.0,
+            period: config.realtime.period(),
+            delay: s.delay,
+            cutoff: config.mapping.velocity_cutoff,
+        };
+        let (max, lever) = (config.passivity.max_damping, config.passivity.lever);
+        let (sampled, stiffness, damping, max, scale) = match motion {
+            MotionKind::Translation => (sampled(s.mass, s.damping), g.stiffness, g.damping, max, config.mapping.scale),
+            MotionKind::Rotation => (
+                sampled(s.inertia, s.rotation_damping),
+                g.rotation_stiffness,
+                g.rotation_damping,
+                max * lever * lever,
+                1.0,
+            ),
+        };
+        let controller = g.passivity.then_some(HoldDamping { max });
+        Self { sampled, stiffness: stiffness * scale, damping: damping * scale, controller, scale }
     }
-    let bearable = (s.rotation_damping - g.rotation_damping).max(0.0) / hold;
-    // Without a rotational proxy the torque follows the force: its stiffness is that of the translation at the lever.
-    if g.law == LawKind::Proxy && g.rotation_stiffness > bearable {
-        findings.push(StabilityFinding::RotationStiffness {
-            stiffness: g.rotation_stiffness,
-            bearable,
-            controlled: g.passivity,
+
+    /// The largest stiffness at the hand that comes to rest.
+    #[must_use]
+    pub fn largest_stiffness(&self) -> f64 {
+        self.sampled.largest_stiffness(self.damping, self.controller)
+    }
+
+    fn findings(&self, motion: MotionKind) -> impl Iterator<Item = StabilityFinding> {
+        let (stiffness, damping) = (self.stiffness / self.scale, self.damping / self.scale);
+        let largest = self.sampled.largest_damping() / self.scale;
+        let runs_away = (damping >= largest).then_some(StabilityFinding::Damping { motion, damping, largest });
+        let largest = self.largest_stiffness() / self.scale;
+        let unstable = (stiffness >= largest && runs_away.is_none()).then_some(StabilityFinding::Unstable {
+            motion,
+            stiffness,
+            largest,
         });
+        // Virtual damping counts against it, as Colgate and Schenkel have it: it comes late like the stiffness.
+        let hold = 0.5 * self.sampled.period + self.sampled.delay;
+        let bearable = (self.sampled.damping - self.damping).max(0.0) / (hold * self.scale);
+        let controlled = self.controller.is_some();
+        let active =
+            (stiffness > bearable).then_some(StabilityFinding::Active { motion, stiffness, bearable, controlled });
+        [runs_away, unstable, active].into_iter().flatten()
+    }
+}
+
+/// The bounds that a configuration does not keep, for a part of which contact regions are at most `width` metres across;
+/// those that the loop does not survive first.
+#[must_use]
+pub fn stability_findings(config: &Config, width: f64) -> Vec<StabilityFinding> {
+    let (g, s) = (&config.gains, &config.stability);
+    let mut findings: Vec<_> =
+        RenderedMotion::new(config, MotionKind::Translation).findings(MotionKind::Translation).collect();
+    // Without a rotational proxy the torque follows the force: its stiffness is that of the translation at the lever.
+    if g.law == LawKind::Proxy {
+        findings.extend(RenderedMotion::new(config, MotionKind::Rotation).findings(MotionKind::Rotation));
     }
     if g.law == LawKind::Blended {
-        let needed = g.max_force * lever * lever * period / (s.rotation_damping + g.rotation_damping);
+        let hold = 0.5 * config.realtime.period() + s.delay;
+        let needed = 2.0 * g.max_force * width * width * hold / (s.rotation_damping + g.rotation_damping);
         if g.blend_depth < needed {
             findings.push(StabilityFinding::BlendDepth { blend_depth: g.blend_depth, needed });
         }
     }
+    findings.sort_by_key(|f| matches!(f, StabilityFinding::Active { .. } | StabilityFinding::BlendDepth { .. }));
     findings
 }
 
@@ -100,13 +202,28 @@ pub fn stability_findings(config: &Config, lever: f64) -> Vec<StabilityFinding> 
 /// # Errors
 /// The first bound that is not kept, if the policy is to refuse.
 pub fn check_stability(config: &Config, scene: &Scene) -> Result<Vec<StabilityFinding>, StabilityFinding> {
-    let lever = scene.world.moving.iter().flat_map(|p| p.vertices()).map(|v| v.length()).fold(0.0, f64::max);
-    let findings = stability_findings(config, lever);
+    let findings = stability_findings(config, widest_face(scene));
     match (config.stability.check, findings.first()) {
         (StabilityPolicy::Off, _) => Ok(Vec::new()),
         (StabilityPolicy::Refuse, Some(first)) => Err(*first),
         _ => Ok(findings),
     }
+}
+
+/// How far two points of one face of the part in the hand are apart at most, metres.
+fn widest_face(scene: &Scene) -> f64 {
+    let mut widest = 0.0f64;
+    for part in &scene.world.moving {
+        for face in part.faces() {
+            let corners = part.face_vertices(face);
+            for v in corners {
+                for w in corners {
+                    widest = widest.max(part.vertex(*v).distance(part.vertex(*w)));
+                }
+            }
+        }
+    }
+    widest
 }
 
 #[cfg(test)]
@@ -140,10 +257,11 @@ mod tests {
 
     fn bound(damping: f64, period: f64) -> f64 {
         let found = stability_findings(&config(2e4, damping, period), 0.03);
-        match found[0] {
-            StabilityFinding::Stiffness { bearable, .. } => bearable,
-            _ => panic!("{found:?}"),
-        }
+        let active = found.iter().find_map(|f| match f {
+            StabilityFinding::Active { motion: MotionKind::Translation, bearable, .. } => Some(*bearable),
+            _ => None,
+        });
+        active.unwrap_or_else(|| panic!("{found:?}"))
     }
 
     #[test]
@@ -166,7 +284,7 @@ mod tests {
         let mut c = config(1000.0, 1.0, 1e-3);
         assert!(stability_findings(&c, 0.03).is_empty());
         c.stability.delay = 1e-3;
-        assert!(matches!(stability_findings(&c, 0.03)[..], [StabilityFinding::Stiffness { bearable, .. }]
+        assert!(matches!(stability_findings(&c, 0.03)[..], [StabilityFinding::Active { bearable, .. }]
             if (bearable - 1.0 / 1.5e-3).abs() < 1e-9));
         c.stability.delay = 0.0;
         c.gains.damping = 0.9;
@@ -197,8 +315,12 @@ mod tests {
         assert_eq!(stability_findings(&Config::default(), 0.03), vec![]);
         let mut c = Config::default();
         (c.gains.stiffness, c.gains.rotation_stiffness) = (2e4, 100.0);
+        c.gains.damping = 1e4;
+        c.mapping.scale = 0.5;
         let found = stability_findings(&c, 0.03);
-        assert_eq!(found.len(), 2);
+        assert!(matches!(found[0], StabilityFinding::Damping { motion: MotionKind::Translation, .. }), "{found:?}");
+        assert!(matches!(found[1], StabilityFinding::Unstable { motion: MotionKind::Rotation, .. }), "{found:?}");
+        assert!(matches!(found[2..], [StabilityFinding::Active { .. }, StabilityFinding::Active { .. }]), "{found:?}");
         assert!(found.iter().all(|f| f.to_string().lines().count() == 1 && f.to_string().contains("gains.")));
     }
 }

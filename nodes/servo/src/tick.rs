@@ -45,7 +45,7 @@ impl Tick {
             mapping: Mapping::new(&config.mapping),
             motion: Motion::new(config.mapping.velocity_cutoff),
             gains: GainRamp::default(),
-            output: Output::new(&config.passivity),
+            output: Output::new(config),
             jump: config.jump,
             cutoff: config.mapping.velocity_cutoff,
             period: config.realtime.period(),

@@ -432,12 +432,44 @@ static SCHEMA: &[ParamSpec] = &[
         "Rotational damping of device and hand that can be counted on."
     ),
     float!(
+        "stability.mass",
+        0.001..20.0,
+        "kg",
+        restart,
+        [stability.mass],
+        "Mass of device and hand, the lightest to be expected."
+    ),
+    float!(
+        "stability.inertia",
+        0.000001..1.0,
+        "kg.m^2",
+        restart,
+        [stability.inertia],
+        "Moment of inertia of device and hand, the least to be expected."
+    ),
+    float!(
         "stability.delay",
         0.0..0.1,
         "s",
         restart,
         [stability.delay],
-        "Delay between measuring and showing beyond the hold of one tick."
+        "Delay between measuring and showing beyond the hold of one tick; the passivity controller makes up for it too."
+    ),
+    float!(
+        "stability.resolution",
+        0.0..0.01,
+        "m",
+        restart,
+        [stability.resolution],
+        "Step of the device's encoders: what the passivity observer takes for no motion."
+    ),
+    float!(
+        "stability.angular_resolution",
+        0.0..0.1,
+        "rad",
+        restart,
+        [stability.angular_resolution],
+        "Step of the device's encoders for rotation."
     ),
     float!("realtime.rate", 250.0..10000.0, "Hz", restart, [realtime.rate], "Ticks a second."),
     int!(

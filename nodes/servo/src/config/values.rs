@@ -125,8 +125,16 @@ pub struct StabilityConfig {
     pub damping: f64,
     /// Rotational damping of device and hand that can be counted on, N.m.s/rad.
     pub rotation_damping: f64,
+    /// Mass of device and hand, kg.
+    pub mass: f64,
+    /// Moment of inertia of device and hand, kg.m^2.
+    pub inertia: f64,
     /// Delay between measuring and showing beyond the hold, s.
     pub delay: f64,
+    /// Step of the device's encoders, metres.
+    pub resolution: f64,
+    /// Step of the device's encoders for rotation, rad.
+    pub angular_resolution: f64,
 }
 
 /// `stability.check`.
@@ -193,7 +201,11 @@ impl Default for Config {
                 check: StabilityPolicy::Warn,
                 damping: 3.0,
                 rotation_damping: 5e-3,
+                mass: 0.3,
+                inertia: 3e-4,
                 delay: 0.0,
+                resolution: 1e-5,
+                angular_resolution: 5e-5,
             },
             realtime: RealtimeConfig { rate: 1000.0, priority: 80, cpu: -1, lock_memory: true },
         }
