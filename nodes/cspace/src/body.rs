@@ -164,11 +164,6 @@ impl Body {
         &self.spokes[self.spoke_start[v] as usize..self.spoke_start[v + 1] as usize]
     }
 
-    /// A vertex of a face.
-    pub(crate) fn vertex_of_face(&self, face: u32) -> u32 {
-        self.sides(face)[0].corner
-    }
-
     /// The vertex lowest along `direction` (own frame), downhill from `from`. Counts the vertices it leaves.
     #[inline]
     pub(crate) fn lowest(&self, direction: DVec3, from: u32, visited: &mut u32) -> u32 {

@@ -453,17 +453,6 @@ impl<'a> Placed<'a> {
         CFace { contact: node, normal_w, distance }
     }
 
-    /// A vertex of A and one of B that support the two bodies along the node's normal.
-    pub(crate) fn vertices_of(&self, node: BasicContact) -> (u32, u32) {
-        match node {
-            BasicContact::TypeB { vertex_a, face_b } => (vertex_a.0, self.b.vertex_of_face(face_b.0)),
-            BasicContact::TypeA { face_a, vertex_b } => (self.a.vertex_of_face(face_a.0), vertex_b.0),
-            BasicContact::TypeC { edge_a, edge_b } => {
-                (self.a.rods[edge_a.index()].vertices[0], self.b.rods[edge_b.index()].vertices[0])
-            }
-        }
-    }
-
     /// A node next to the unit direction `m` (axes of W), where vertices `va` and `vb` support the two bodies, with
     /// no smaller signed distance than `m` has: out of the overlaid cell along the gradient, then along its border.
     pub(crate) fn node_from_direction(&self, m: DVec3, va: u32, vb: u32) -> BasicContact {

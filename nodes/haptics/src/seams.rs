@@ -155,7 +155,9 @@ impl Seams {
     }
 }
 
-/// Clips the face by each other piece, a little outside of the face, and compares areas.
+/// What is left of the face when every other piece has been cut out of it, a little outside of the face, by area.
+///
+/// Several pieces may cover a face together that none covers alone: what one leaves open is cut by the next.
 fn cover_of<'a>(
     piece: &Polyhedron,
     face: FaceId,
@@ -165,37 +167,57 @@ fn cover_of<'a>(
     let normal = piece.face_plane(face).normal;
     let ring: Vec<DVec3> = piece.face_vertices(face).iter().map(|v| piece.vertex(*v)).collect();
     let whole = area(&ring, normal);
-    let mut most = 0.0_f64;
+    let mut open = vec![ring];
     for other in others {
-        let mut polygon = ring.clone();
-        for f in other.faces() {
-            let plane = other.face_plane(f);
-            let height = |p: DVec3| plane.signed_distance(p + normal * (4.0 * tolerance)) - tolerance;
-            let mut kept = Vec::with_capacity(polygon.len() + 1);
-            for (k, p) in polygon.iter().enumerate() {
-                let q = polygon[(k + 1) % polygon.len()];
-                let (hp, hq) = (height(*p), height(q));
-                if hp <= 0.0 {
-                    kept.push(*p);
-                }
-                if (hp <= 0.0) != (hq <= 0.0) {
-                    kept.push(*p + (q - *p) * (hp / (hp - hq)));
-                }
-            }
-            polygon = kept;
-            if polygon.is_empty() {
-                break;
-            }
-        }
-        most = most.max(area(&polygon, normal));
+        open = open.into_iter().flat_map(|polygon| outside_of(polygon, other, normal, tolerance)).collect();
     }
-    if most >= 0.9999 * whole {
+    let left: f64 = open.iter().map(|polygon| area(polygon, normal)).sum();
+    if left <= 1e-4 * whole {
         Cover::Internal
-    } else if most > 1e-6 * whole {
+    } else if left < (1.0 - 1e-6) * whole {
         Cover::Partial
     } else {
         Cover::Open
     }
+}
+
+/// The convex parts of a convex polygon that lie outside of a piece when lifted a little along `normal`: for each face
+/// of the piece in turn what lies beyond it; what lies beyond none is inside.
+fn outside_of(mut polygon: Vec<DVec3>, other: &Polyhedron, normal: DVec3, tolerance: f64) -> Vec<Vec<DVec3>> {
+    let mut outside = Vec::new();
+    for f in other.faces() {
+        let plane = other.face_plane(f);
+        let height = |p: DVec3| plane.signed_distance(p + normal * (4.0 * tolerance)) - tolerance;
+        let (inner, beyond) = split(&polygon, height);
+        if beyond.len() > 2 {
+            outside.push(beyond);
+        }
+        polygon = inner;
+        if polygon.len() < 3 {
+            break;
+        }
+    }
+    outside
+}
+
+/// The parts of a convex polygon where `height` is not positive, and where it is.
+fn split(polygon: &[DVec3], height: impl Fn(DVec3) -> f64) -> (Vec<DVec3>, Vec<DVec3>) {
+    let (mut below, mut above) = (Vec::with_capacity(polygon.len() + 1), Vec::new());
+    for (k, p) in polygon.iter().enumerate() {
+        let q = polygon[(k + 1) % polygon.len()];
+        let (hp, hq) = (height(*p), height(q));
+        if hp <= 0.0 {
+            below.push(*p)
+        } else {
+            above.push(*p)
+        }
+        if (hp <= 0.0) != (hq <= 0.0) {
+            let crossing = *p + (q - *p) * (hp / (hp - hq));
+            below.push(crossing);
+            above.push(crossing);
+        }
+    }
+    (below, above)
 }
 
 fn area(polygon: &[DVec3], normal: DVec3) -> f64 {
@@ -238,6 +260,27 @@ mod tests {
         assert_eq!(covers.iter().filter(|c| **c == Cover::Partial).count(), 1, "{covers:?}");
         let top = FaceId(covers.iter().position(|c| *c == Cover::Partial).unwrap() as u32);
         assert!(s.is_covered(0, top, DVec3::new(0.7, 0.0, 0.0)) && !s.is_covered(0, top, DVec3::new(0.2, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn a_face_that_two_pieces_cover_together_is_internal() {
+        // A floor of three: the side of the second at x = 0 lies in the first up to y = 0.1, and in the third beyond.
+        let tile =
+            |x: [f64; 2], y: [f64; 2]| Arc::new(cuboid(DVec3::new(x[0], y[0], -1.0), DVec3::new(x[1], y[1], 0.0)));
+        let s = Seams::new(vec![
+            tile([-1.0, 0.2], [-1.0, 0.1]),
+            tile([0.0, 1.0], [-1.0, 0.3]),
+            tile([-1.0, 1.0], [0.1, 1.0]),
+        ]);
+        for piece in 0..3 {
+            let p = &s.pieces[piece];
+            for f in p.faces() {
+                let n = p.face_plane(f).normal;
+                let point = p.vertex(p.face_vertices(f)[0]).dot(n) * n;
+                let outer = n.z != 0.0 || (point.length() - 1.0).abs() < 1e-12;
+                assert_eq!(s.cover(piece, f) == Cover::Internal, !outer, "piece {piece}, normal {n}, at {point}");
+            }
+        }
     }
 
     #[test]

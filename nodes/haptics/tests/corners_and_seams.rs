@@ -2,7 +2,10 @@
 
 mod support;
 
+use cspace::Polyhedron;
+use glam::DVec2;
 use haptics::{Gains, LawKind, RenderLaw, Renderer};
+use rand::RngExt;
 use spatial::DVec3;
 use support::{block, cuboid, mm, peg_in_hole, pose, world};
 
@@ -52,6 +55,33 @@ fn peg_on_two_walls_and_the_bottom_feels_each_once() {
     }
 }
 
+/// The floor cut at random into `n` tiles that abut or overlap, with joints that end at other joints.
+fn tiles(seed: u64, n: usize) -> Vec<Polyhedron> {
+    let mut rng = support::random::rng(seed);
+    let mut tiles = vec![[DVec2::splat(-40.0), DVec2::splat(40.0)]];
+    while tiles.len() < n {
+        let [low, high] = tiles.swap_remove(rng.random_range(0..tiles.len()));
+        let at = low.lerp(high, rng.random_range(0.3..0.7));
+        let across = if rng.random() { DVec2::new(at.x, high.y) } else { DVec2::new(high.x, at.y) };
+        tiles.push([low, across]);
+        tiles.push([if across.x == at.x { DVec2::new(at.x, low.y) } else { DVec2::new(low.x, at.y) }, high]);
+    }
+    let mut grow = || if rng.random() { rng.random_range(0.0..6.0) } else { 0.0 };
+    tiles
+        .into_iter()
+        .map(|[low, high]| {
+            let low = (low - DVec2::new(grow(), grow())).max(DVec2::splat(-40.0));
+            let high = (high + DVec2::new(grow(), grow())).min(DVec2::splat(40.0));
+            cuboid(mm(low.x, low.y, -20.0), mm(high.x, high.y, 0.0))
+        })
+        .collect()
+}
+
+/// How the box rocks, rad, after `s` seconds.
+fn tilt(s: f64) -> f64 {
+    0.05 * (7.0 * s).sin()
+}
+
 /// A box pushed into and dragged and rocked over a floor, by every law.
 fn over_the_floor(w: &std::sync::Arc<cspace::World>, law: LawKind, flat: bool) -> Vec<spatial::Wrench> {
     let mut r = Renderer::new(w.clone());
@@ -59,7 +89,7 @@ fn over_the_floor(w: &std::sync::Arc<cspace::World>, law: LawKind, flat: bool) -
     (0..3000)
         .map(|i| {
             let s = f64::from(i) * 1e-3;
-            let tilt = if flat { 0.0 } else { 0.05 * (7.0 * s).sin() };
+            let tilt = if flat { 0.0 } else { tilt(s) };
             let p = pose(-12.0 + 8.0 * s, 1.0 + (3.0 * s).sin(), 4.0 + (5.0 * s).cos(), tilt, 0.7 * tilt, 0.3 * s);
             r.render(&p, &gains(law), 1e-3).wrench
         })
@@ -71,11 +101,12 @@ fn floor_cut_into_pieces_feels_like_the_whole_floor() {
     let tool = || block(mm(10.0, 8.0, 9.0));
     let piece = |from: f64, to: f64| cuboid(mm(from, -40.0, -20.0), mm(to, 40.0, 0.0));
     let whole = world(tool(), vec![piece(-40.0, 40.0)]);
-    let cuts = [
+    let mut cuts = vec![
         world(tool(), vec![piece(-40.0, 0.0), piece(0.0, 40.0)]),
         world(tool(), vec![piece(-40.0, 3.0), piece(-2.0, 40.0)]),
         world(tool(), vec![piece(-40.0, -4.0), piece(-5.0, 2.0), piece(2.0, 40.0)]),
     ];
+    cuts.extend((1..=8).map(|seed| world(tool(), tiles(seed, 3 + seed as usize))));
     for law in LAWS {
         for flat in [true, false] {
             let expected = over_the_floor(&whole, law, flat);
@@ -86,7 +117,10 @@ fn floor_cut_into_pieces_feels_like_the_whole_floor() {
                 for (i, (f, e)) in found.iter().zip(&expected).enumerate() {
                     let df = (f.force - e.force).length();
                     assert!(df < 1e-6, "{law:?} flat {flat} cut {k} tick {i}: force {} for {}", f.force, e.force);
-                    if law == LawKind::Proxy || law == LawKind::Pstar {
+                    // The torque of `pstar` jumps where the box lies down flat; of that very tick the pieces may
+                    // see the one side or the other.
+                    let lies_down = !flat && tilt(f64::from(i as u32) * 1e-3).abs() < 1e-5;
+                    if law == LawKind::Proxy || law == LawKind::Pstar && !lies_down {
                         let dt = (f.torque - e.torque).length();
                         assert!(dt < 1e-6, "{law:?} flat {flat} cut {k} tick {i}: {} for {}", f.torque, e.torque);
                     }
