@@ -1,7 +1,7 @@
 use crate::palette;
 use crate::slice::{PairSlice, Role};
 use crate::subject::Subject;
-use cspace::CFacePolygon;
+use cspace::{BasicContact, CFacePolygon};
 use glam::DVec3;
 use rerun::{GraphEdges, GraphNodes, RecordingStream, RecordingStreamResult, Rgba32};
 
@@ -78,15 +78,24 @@ fn color(role: Role) -> palette::Rgb {
 /// Type and features, A's first: `B v3-f1`.
 fn label(face: &CFacePolygon) -> String {
     let [contact] = face.contacts[..] else {
-        let has = |letter: char| face.contacts.iter().any(|c| c.type_letter() == letter);
-        let kind = if has('A') && has('B') { "face-face" } else { "edge-face" };
-        return format!("{kind} ({})", face.contacts.len());
+        return principal(&face.contacts);
     };
     let (a, b) = contact.features();
     match contact.type_letter() {
         'A' => format!("A f{a}-v{b}"),
         'B' => format!("B v{a}-f{b}"),
         _ => format!("C e{a}-e{b}"),
+    }
+}
+
+/// The features that lie in each other where several contacts take place on one C-face: `edge-face e4-f1`, A's first.
+fn principal(contacts: &[BasicContact]) -> String {
+    let of = |letter: char| contacts.iter().find(|c| c.type_letter() == letter).map(BasicContact::features);
+    match (of('A'), of('B'), of('C')) {
+        (Some((face_a, _)), Some((_, face_b)), _) => format!("face-face f{face_a}-f{face_b}"),
+        (Some((face_a, _)), None, Some((_, edge_b))) => format!("face-edge f{face_a}-e{edge_b}"),
+        (None, Some((_, face_b)), Some((edge_a, _))) => format!("edge-face e{edge_a}-f{face_b}"),
+        _ => format!("{} contacts", contacts.len()),
     }
 }
 

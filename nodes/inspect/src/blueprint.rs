@@ -1,64 +1,18 @@
 use crate::clock::{ROBOT_TIME, TICK};
+use crate::eye::{Eye, Eyes};
 use crate::layout::{Node, View, send};
 use crate::sink::APPLICATION;
-use crate::subject::Subject;
 use crate::{applicability, contact_states, cspace_view, events, legend, palette, physical, series};
-use glam::DVec3;
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    Background, EyeControls3D, LineGrid3D, PlotLegend, TextLogColumns, TimePanelBlueprint, VisibleTimeRanges,
-    VisualBounds2D,
+    Background, LineGrid3D, PlotLegend, TextLogColumns, TimePanelBlueprint, VisibleTimeRanges, VisualBounds2D,
 };
 use rerun::external::re_sdk_types::blueprint::components::{BackgroundKind, Corner2D, PanelState, PlayState};
+use rerun::external::re_sdk_types::blueprint::datatypes::{TextLogColumn, TextLogColumnKind};
 use rerun::external::re_sdk_types::datatypes::{TimeInt, TimeRange, TimeRangeBoundary, Utf8, VisibleTimeRange};
 use rerun::{RecordingStream, RecordingStreamResult};
 
 /// Length of the trail of `x` in the C-space view.
 const TRAIL_SECONDS: i64 = 3;
-
-/// Where to look from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Eye {
-    /// Position of the eye, metres, W.
-    pub position: DVec3,
-    /// Point in the middle of the picture, metres, W.
-    pub target: DVec3,
-}
-
-impl Eye {
-    /// Looks at a box from the front, right and above, so that it fills the picture.
-    pub(crate) fn facing((low, high): (DVec3, DVec3)) -> Self {
-        let target = 0.5 * (low + high);
-        let distance = 0.98 * (high - low).length().max(1e-6);
-        Self { position: target + DVec3::new(0.62, -0.68, 0.40) * distance, target }
-    }
-
-    fn controls(&self) -> EyeControls3D {
-        EyeControls3D::new()
-            .with_position(self.position.as_vec3().to_array())
-            .with_look_target(self.target.as_vec3().to_array())
-            .with_eye_up([0.0, 0.0, 1.0])
-    }
-}
-
-/// The two eyes of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Eyes {
-    /// Of the physical scene.
-    pub physical: Eye,
-    /// Of the C-space view.
-    pub cspace: Eye,
-}
-
-impl Eyes {
-    pub(crate) fn of(subject: &Subject) -> Self {
-        let (low, high) = subject.fixed_bounds();
-        let margin = DVec3::splat(subject.moving_size());
-        // The part is above, and the corner nearest to the eye reaches far down.
-        let physical = Eye::facing((low - 0.4 * DVec3::Z * margin.z, high + DVec3::Z * margin.z));
-        // The C-obstacles are the obstacles grown by the part.
-        Self { physical, cspace: Eye::facing((low - margin, high + margin)) }
-    }
-}
 
 fn view_3d(title: &str, root: &str, eye: &Eye) -> View {
     View::new("3D", title, root)
@@ -79,11 +33,12 @@ fn log_view() -> View {
         visible: true.into(),
         timeline: ROBOT_TIME.into(),
     };
-    View::new("TextLog", "Events", events::EVENTS).with(
-        "TextLogColumns",
-        TextLogColumns::new()
-            .with_timeline_columns([rerun::external::re_sdk_types::blueprint::components::TimelineColumn(column)]),
-    )
+    // When and what: all come from one entity, and the colour says the kind.
+    let body = TextLogColumn { visible: true.into(), kind: TextLogColumnKind::Body };
+    let columns = TextLogColumns::new()
+        .with_timeline_columns([rerun::external::re_sdk_types::blueprint::components::TimelineColumn(column)])
+        .with_text_log_columns([rerun::external::re_sdk_types::blueprint::components::TextLogColumn(body)]);
+    View::new("TextLog", "Events", events::EVENTS).with("TextLogColumns", columns)
 }
 
 /// Opens at the newest moment: the series are whole, and a live recording is followed.
@@ -108,12 +63,12 @@ fn trail_range() -> VisibleTimeRanges {
     VisibleTimeRanges::new([back(ROBOT_TIME, TRAIL_SECONDS * 1_000_000_000), back(TICK, TRAIL_SECONDS * 1000)])
 }
 
-/// Sends the layout of a run.
-pub(crate) fn send_run(stream: &RecordingStream, eyes: &Eyes) -> RecordingStreamResult<()> {
+/// Sends the layout of a run; `timed`: whether its ticks were timed, which those of a replayed motion are not.
+pub(crate) fn send_run(stream: &RecordingStream, eyes: &Eyes, timed: bool) -> RecordingStreamResult<()> {
     let physical = view_3d("Physical space [m]", physical::ROOT, &eyes.physical);
     let cspace = view_3d("C-space at the present orientation [m]", cspace_view::ROOT, &eyes.cspace)
         .entity(cspace_view::TRAIL, trail_range());
-    let plots = series::PLOTS.iter().map(|plot| {
+    let plots = series::PLOTS.iter().filter(|plot| timed || plot.entity != series::TIMES).map(|plot| {
         let legend = PlotLegend::new().with_corner(Corner2D::LeftTop);
         (1.0, Node::View(View::new("TimeSeries", plot.title, plot.entity).with("PlotLegend", legend)))
     });
@@ -126,7 +81,7 @@ pub(crate) fn send_run(stream: &RecordingStream, eyes: &Eyes) -> RecordingStream
     let bottom = Node::Row(vec![(1.2, Node::Tabs(graphs)), (1.0, Node::View(log_view()))]);
     let left = Node::Column(vec![(5.4, spaces), (1.25, Node::View(legend_view())), (3.6, bottom)]);
     let mut right: Vec<(f32, Node)> = plots.collect();
-    right.push((0.75, Node::View(lanes)));
+    right.push((0.95, Node::View(lanes)));
     let root = Node::Row(vec![(2.7, left), (1.0, Node::Column(right))]);
     send(stream, APPLICATION, root, &time_panel())
 }

@@ -1,4 +1,5 @@
 use crate::budget::Budget;
+use crate::eye::Eye;
 use crate::palette;
 use crate::physical::{ArrowScale, arrow};
 use crate::slice::{PairSlice, Role};
@@ -67,14 +68,15 @@ pub(crate) struct CSpaceView {
 }
 
 impl CSpaceView {
-    pub(crate) fn open(
-        stream: &RecordingStream,
-        leader: f64,
-        eye: DVec3,
-        budget: Budget,
-    ) -> RecordingStreamResult<Self> {
+    pub(crate) fn open(stream: &RecordingStream, budget: Budget) -> RecordingStreamResult<Self> {
         stream.log_static(ROOT, &rerun::ViewCoordinates::RIGHT_HAND_Z_UP())?;
-        Ok(Self { drawn: Default::default(), budget, leader, eye })
+        Ok(Self { drawn: Default::default(), budget, leader: 0.0, eye: DVec3::ZERO })
+    }
+
+    /// Where the view is looked at from: labels are put aside accordingly.
+    pub(crate) fn look_from(&mut self, eye: &Eye) {
+        self.leader = 0.17 * eye.position.distance(eye.target);
+        self.eye = eye.position;
     }
 
     /// Draws one frame at time `now` (s). The stream's time is set.
@@ -156,7 +158,7 @@ impl CSpaceView {
 fn marker(at: DVec3, color: palette::Rgb) -> Points3D {
     Points3D::new([at.as_vec3().to_array()])
         .with_colors([palette::solid(color)])
-        .with_radii([Radius::new_ui_points(4.5)])
+        .with_radii([Radius::new_ui_points(5.5)])
 }
 
 /// Lines of `width` screen points.

@@ -1,11 +1,13 @@
 use crate::palette;
 use crate::physical::ArrowScale;
 use rerun::components::Radius;
-use rerun::{Boxes2D, Points2D, RecordingStream, RecordingStreamResult};
+use rerun::{LineStrips2D, Points2D, RecordingStream, RecordingStreamResult};
 
 /// The legend: a strip of coloured fields with their meaning beside them.
 pub(crate) const LEGEND: &str = "/legend";
 
+/// Half the width of a letter of a label in the view's own units, on a screen of 1600 points.
+const HALF_LETTER: f32 = 0.27;
 /// Distance of two columns and of two rows, in the view's own units.
 const STEP: [f32; 2] = [20.0, 3.4];
 const COLUMNS: usize = 5;
@@ -50,16 +52,18 @@ pub(crate) fn open_overview(stream: &RecordingStream) -> RecordingStreamResult<(
 fn draw(stream: &RecordingStream, entries: &[(&str, palette::Rgb)]) -> RecordingStreamResult<()> {
     let place = |i: usize| [(i % COLUMNS) as f32 * STEP[0], (i / COLUMNS) as f32 * STEP[1]];
     let colors: Vec<_> = entries.iter().map(|(_, color)| palette::solid(*color)).collect();
-    let half = [0.9_f32, 0.9];
-    let fields = Boxes2D::from_centers_and_half_sizes((0..entries.len()).map(place), entries.iter().map(|_| half))
-        .with_colors(colors.clone());
-    stream.log_static(format!("{LEGEND}/fields"), &fields)?;
-    let discs = Points2D::new((0..entries.len()).map(place))
+    // Short thick lines make filled fields.
+    let bar = |i: usize| [-0.6, 0.6].map(|x| [place(i)[0] + x, place(i)[1]]);
+    let fields = LineStrips2D::new((0..entries.len()).map(bar))
         .with_colors(colors.clone())
         .with_radii([Radius::new_ui_points(7.0)]);
-    stream.log_static(format!("{LEGEND}/discs"), &discs)?;
-    // A label stands below its point: the points are raised so that text and field are level.
-    let texts = Points2D::new((0..entries.len()).map(|i| [place(i)[0] + 8.0, place(i)[1] - 1.35]))
+    stream.log_static(format!("{LEGEND}/fields"), &fields)?;
+    // A label stands below its point, in its middle: the points are moved so that it stands right of the field.
+    let text = |i: usize| {
+        let [x, y] = place(i);
+        [x + 2.2 + HALF_LETTER * entries[i].0.chars().count() as f32, y - 1.35]
+    };
+    let texts = Points2D::new((0..entries.len()).map(text))
         .with_labels(entries.iter().map(|(text, _)| *text))
         .with_colors(colors)
         .with_radii([Radius::new_ui_points(0.1)])

@@ -1,9 +1,11 @@
-use crate::blueprint::{self, Eyes};
+use crate::blueprint;
+use crate::eye::Eyes;
+use crate::pairs::Pairs;
 use crate::sink::Sink;
 use crate::subject::Subject;
 use crate::surface::Surface;
 use crate::{InspectError, legend, palette, physical};
-use cspace::{BasicContact, CFacePolygon, c_face_polygons};
+use cspace::{BasicContact, CFacePolygon};
 use glam::{DQuat, DVec3};
 use rerun::{Clear, RecordingStream, RecordingStreamResult};
 use spatial::Pose;
@@ -24,7 +26,8 @@ const C_OBSTACLES: &str = "/cspace_m/c_obstacles";
 const KINDS: [(&str, palette::Rgb); 4] =
     [("type_a", palette::OTHER), ("type_b", palette::NEAR), ("type_c", palette::LOCAL), ("several", palette::TOUCHING)];
 
-/// Records a scene without a run: parts, convex pieces, and the C-obstacles over a sweep of orientations.
+/// Records a scene without a run: parts, convex pieces, and the C-obstacles over a sweep of orientations; of large bodies
+/// the side that faces the part.
 ///
 /// # Errors
 /// The sink cannot be opened or does not take the recording within `timeout`.
@@ -35,7 +38,7 @@ pub fn record_overview(subject: &Subject, sink: &Sink, timeout: Duration) -> Res
 }
 
 pub(crate) fn record(stream: &RecordingStream, subject: &Subject) -> RecordingStreamResult<()> {
-    let eyes = Eyes::of(subject);
+    let eyes = Eyes::of(subject, DQuat::IDENTITY);
     blueprint::send_overview(stream, &eyes, SWEEP)?;
     legend::open_overview(stream)?;
     stream.log_static("/cspace_m", &rerun::ViewCoordinates::RIGHT_HAND_Z_UP())?;
@@ -46,6 +49,7 @@ pub(crate) fn record(stream: &RecordingStream, subject: &Subject) -> RecordingSt
         stream.log_static(entity.as_str(), &surface.mesh(palette::glass(palette::SCP, 0.75)))?;
         stream.log_static(format!("{entity}/edges"), &surface.edges(palette::solid(palette::SCP), 1.5))?;
     }
+    let mut pairs = Pairs::new(&subject.world);
     // The part hovers above the obstacles, where nothing hides it.
     let (low, high) = subject.fixed_bounds();
     let hover = DVec3::new(0.5 * (low.x + high.x), 0.5 * (low.y + high.y), high.z + 1.3 * subject.moving_size());
@@ -54,17 +58,22 @@ pub(crate) fn record(stream: &RecordingStream, subject: &Subject) -> RecordingSt
             let rotation = DQuat::from_axis_angle(axis, (degrees as f64).to_radians());
             stream.set_time_sequence(SWEEP, begin + degrees);
             stream.log(PART, &physical::transform(&Pose::new(hover, rotation)))?;
-            c_obstacles(stream, subject, rotation)?;
+            c_obstacles(stream, subject, &mut pairs, &Pose::new(hover, rotation))?;
         }
     }
     Ok(())
 }
 
-fn c_obstacles(stream: &RecordingStream, subject: &Subject, rotation: DQuat) -> RecordingStreamResult<()> {
+fn c_obstacles(
+    stream: &RecordingStream,
+    subject: &Subject,
+    pairs: &mut Pairs,
+    pose: &Pose,
+) -> RecordingStreamResult<()> {
     let mut surfaces: [Surface; 4] = Default::default();
-    for a in &subject.world.moving {
-        for fixed in &subject.world.fixed {
-            for face in c_face_polygons(a, &fixed.polyhedron, rotation) {
+    for part in 0..subject.world.moving.len() {
+        for piece in 0..subject.world.fixed.len() {
+            for face in pairs.polygons(&subject.world, (part, piece), pose, f64::INFINITY) {
                 surfaces[kind(&face)].push(&face.vertices, face.normal_w);
             }
         }

@@ -1,10 +1,12 @@
 use crate::applicability::ApplicabilityGraph;
-use crate::blueprint::{self, Eyes};
+use crate::blueprint;
 use crate::budget::Budget;
 use crate::clock::Clock;
 use crate::contact_states::ContactStates;
 use crate::cspace_view::CSpaceView;
 use crate::events::Events;
+use crate::eye::Eyes;
+use crate::pairs::Pairs;
 use crate::physical::ArrowScale;
 use crate::series::Series;
 use crate::sink::Sink;
@@ -13,6 +15,7 @@ use crate::subject::Subject;
 use crate::{InspectError, legend, physical};
 use rerun::{RecordingStream, RecordingStreamResult};
 use servo::TickRecord;
+use spatial::DQuat;
 use std::time::Duration;
 
 /// How a recording is made.
@@ -37,7 +40,7 @@ impl Default for Options {
 /// Turns tick records into a rerun recording.
 ///
 /// Every tick goes into the series, as columns of 500 rows. The 3D views and the graphs are drawn at 30 frames a second
-/// of robot time to a file and 60 to a viewer; the C-face polygons only when they changed, within a budget of 80 kB/s to
+/// of robot time to a file and 60 to a viewer; the C-face polygons only when they changed, within a budget of 60 kB/s to
 /// a file and 4 MB/s to a viewer. Changes of formation and health are never left out.
 ///
 /// Calls may block while the disk or the viewer is slow: where that must not be, use [`crate::Feed`].
@@ -48,6 +51,8 @@ pub struct Recorder {
     scale: ArrowScale,
     frame_nanos: i64,
     reach: f64,
+    eyes: Option<Eyes>,
+    pairs: Pairs,
     clock: Option<Clock>,
     last_frame: Option<i64>,
     series: Series,
@@ -58,7 +63,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Opens the sink and sends the layout and what does not move.
+    /// Opens the sink and sends what does not move; the layout follows with the first tick, which it is made for.
     ///
     /// # Errors
     /// The file cannot be written, or the address is not one. A viewer that is not there is no error.
@@ -91,18 +96,15 @@ impl Recorder {
         options: &Options,
     ) -> RecordingStreamResult<Self> {
         let size = subject.moving_size();
-        let (low, high) = subject.fixed_bounds();
-        let extent = (high - low).length() + 2.0 * size;
         let scale = ArrowScale::new(size, options.full_scale.0, options.full_scale.1);
-        let eyes = options.eyes.unwrap_or_else(|| Eyes::of(&subject));
-        blueprint::send_run(&stream, &eyes)?;
         legend::open(&stream, &scale)?;
         physical::open(&stream, &subject)?;
+        let pairs = Pairs::new(&subject.world);
         let frames = options.frames_per_second.unwrap_or(frames).clamp(0.1, 1000.0);
         Ok(Self {
             series: Series::open(&stream)?,
             events: Events::open(&stream)?,
-            cspace: CSpaceView::open(&stream, 0.17 * extent, eyes.cspace.position, Budget::new(bytes))?,
+            cspace: CSpaceView::open(&stream, Budget::new(bytes))?,
             states: ContactStates::default(),
             graph: ApplicabilityGraph::default(),
             stream,
@@ -111,6 +113,8 @@ impl Recorder {
             scale,
             frame_nanos: (1e9 / frames) as i64,
             reach: options.reach * size,
+            eyes: options.eyes,
+            pairs,
             clock: None,
             last_frame: None,
         })
@@ -121,7 +125,15 @@ impl Recorder {
     /// # Errors
     /// rerun refused the data; the recording goes on.
     pub fn tick(&mut self, record: &TickRecord) -> Result<(), InspectError> {
-        let clock = *self.clock.get_or_insert_with(|| Clock::new(record));
+        let clock = match self.clock {
+            Some(clock) => clock,
+            None => {
+                let rotation = if record.proxy.is_valid() { record.proxy.rotation } else { DQuat::IDENTITY };
+                // A tick that was timed takes time.
+                self.lay_out(rotation, record.compute_ns > 0 || record.wakeup_ns > 0)?;
+                *self.clock.insert(Clock::new(record))
+            }
+        };
         self.series.push(&self.stream, &clock, record)?;
         clock.set(&self.stream, record);
         self.events.push(&self.stream, &self.subject, record)?;
@@ -130,6 +142,13 @@ impl Recorder {
             self.frame(record)?;
         }
         Ok(())
+    }
+
+    /// Sends the layout for a run that begins with A turned by `rotation`.
+    fn lay_out(&mut self, rotation: DQuat, timed: bool) -> RecordingStreamResult<()> {
+        let eyes = self.eyes.unwrap_or_else(|| Eyes::of(&self.subject, rotation));
+        self.cspace.look_from(&eyes.cspace);
+        blueprint::send_run(&self.stream, &eyes, timed)
     }
 
     /// Whether a frame is due at `now` (ns). A stamp that runs backwards draws at once and starts the count anew.
@@ -147,7 +166,7 @@ impl Recorder {
             return Ok(());
         }
         physical::frame(&self.stream, record, &self.scale)?;
-        let slices = slice(&self.subject.world, &record.proxy, &record.formation, self.reach);
+        let slices = slice(&self.subject.world, &mut self.pairs, &record.proxy, &record.formation, self.reach);
         let now = record.input.stamp.as_secs_f64();
         self.cspace.frame(&self.stream, record, &slices, &self.scale, now)?;
         self.graph.frame(&self.stream, &self.subject, &slices)
@@ -158,8 +177,9 @@ impl Recorder {
     /// # Errors
     /// Not everything was taken in time.
     pub fn finish(mut self, timeout: Duration) -> Result<(), InspectError> {
-        if let Some(clock) = self.clock {
-            self.series.flush(&self.stream, &clock)?;
+        match self.clock {
+            Some(clock) => self.series.flush(&self.stream, &clock)?,
+            None => self.lay_out(DQuat::IDENTITY, true)?,
         }
         let flushed = self.stream.flush_with_timeout(timeout);
         flushed.map_err(|e| InspectError::Flush { sink: self.name, reason: e.to_string() })

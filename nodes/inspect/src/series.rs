@@ -16,6 +16,9 @@ pub(crate) struct Plot {
     value: fn(&TickRecord, &mut Vec<f64>),
 }
 
+/// What the servo itself took.
+pub(crate) const TIMES: &str = "/series/time_us";
+
 /// All plots, top to bottom.
 pub(crate) const PLOTS: &[Plot] = &[
     Plot {
@@ -43,7 +46,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         value: |r, out| out.push(r.energy * 1e3),
     },
     Plot {
-        entity: "/series/time_us",
+        entity: TIMES,
         title: "Servo tick [us]",
         lines: &[("wake-up late by [us]", palette::OTHER), ("computing [us]", palette::NEAR)],
         value: |r, out| out.extend([f64::from(r.wakeup_ns) * 1e-3, f64::from(r.compute_ns) * 1e-3]),

@@ -1,16 +1,16 @@
-use cspace::{BasicContact, CFacePolygon, ContactGraph, World, c_face_polygons};
+use crate::pairs::Pairs;
+use cspace::{BasicContact, CFacePolygon, World};
 use haptics::ContactFormation;
 use spatial::Pose;
-use std::collections::BTreeSet;
 
 /// What a C-face is to `x` right now, most telling first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Role {
     /// A contact takes place on it.
     Touching,
-    /// The C-face of its pair that is nearest to `x`.
+    /// The C-face of a pair in contact, or else of the nearest pair, that is nearest to `x`.
     Near,
-    /// Of the local subgraph: neighbour of Near.
+    /// Of the local subgraph (paper, section II.A): shares an edge with Near.
     Local,
     /// Applicable at this orientation, no more.
     Other,
@@ -27,7 +27,7 @@ pub(crate) struct PairSlice {
     pub part: usize,
     /// Index in `World::fixed`.
     pub piece: usize,
-    /// Its faces.
+    /// Its faces; of large bodies those around Near.
     pub faces: Vec<CFacePolygon>,
     /// The role of each face.
     pub roles: Vec<Role>,
@@ -41,23 +41,49 @@ pub(crate) struct PairSlice {
 ///
 /// Taken at the proxy's pose, `x` is the SCP: it lies on the C-faces of the contacts that take place, and the force
 /// leaves them along their normals.
-pub(crate) fn slice(world: &World, pose: &Pose, formation: &ContactFormation, reach: f64) -> Vec<PairSlice> {
+pub(crate) fn slice(
+    world: &World,
+    pairs: &mut Pairs,
+    pose: &Pose,
+    formation: &ContactFormation,
+    reach: f64,
+) -> Vec<PairSlice> {
     let mut slices = Vec::new();
     for (part, a) in world.moving.iter().enumerate() {
+        let center = pose.transform_point(a.center());
         for (piece, fixed) in world.fixed.iter().enumerate() {
-            let faces = c_face_polygons(a, &fixed.polyhedron, pose.rotation);
             let contacts =
                 formation.points().iter().filter(|p| p.part_a as usize == part && p.piece_b as usize == piece);
             let touching: Vec<_> = contacts.map(|p| p.contact).collect();
-            let graph = ContactGraph::new(a, &fixed.polyhedron);
-            if let Some(slice) = classify(part, piece, faces, pose, &touching, &graph)
+            let b = &fixed.polyhedron;
+            if touching.is_empty() && center.distance(b.center()) - a.size() - b.size() > reach {
+                continue;
+            }
+            let far = if touching.is_empty() { reach } else { f64::INFINITY };
+            let faces = pairs.polygons(world, (part, piece), pose, far);
+            if let Some(slice) = classify(part, piece, faces, pose, &touching)
                 && (slice.distance < reach || !touching.is_empty())
             {
                 slices.push(slice);
             }
         }
     }
+    quiet(&mut slices);
     slices
+}
+
+/// Near and its local subgraph are told apart in the pairs that touch alone, or else in the nearest: the others' would
+/// hide them.
+fn quiet(slices: &mut [PairSlice]) {
+    let touches = |s: &PairSlice| s.roles.contains(&Role::Touching);
+    let nearest = slices.iter().map(|s| s.distance).fold(f64::INFINITY, f64::min);
+    let any = slices.iter().any(touches);
+    for slice in slices.iter_mut() {
+        let told = if any { touches(slice) } else { slice.distance == nearest };
+        if !told {
+            slice.roles.fill(Role::Other);
+        }
+    }
 }
 
 fn classify(
@@ -66,19 +92,16 @@ fn classify(
     faces: Vec<CFacePolygon>,
     pose: &Pose,
     touching: &[BasicContact],
-    graph: &ContactGraph<'_>,
 ) -> Option<PairSlice> {
     let distances: Vec<f64> = faces.iter().map(|f| f.distance(pose.translation)).collect();
     let near = (0..faces.len()).max_by(|&i, &j| distances[i].total_cmp(&distances[j]))?;
-    // The local subgraph: Near and its applicable G-neighbours (paper, section III, step 2a).
-    let local: BTreeSet<BasicContact> = faces[near].contacts.iter().flat_map(|c| graph.neighbors(*c)).collect();
     let role = |i: usize| {
         let face = &faces[i];
         if face.contacts.iter().any(|c| touching.contains(c)) {
             Role::Touching
         } else if i == near {
             Role::Near
-        } else if face.contacts.iter().any(|c| local.contains(c)) {
+        } else if faces[near].is_neighbor(face) {
             Role::Local
         } else {
             Role::Other

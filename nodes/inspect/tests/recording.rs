@@ -2,41 +2,14 @@
 
 mod support;
 
-use inspect::{Options, Recorder, Sink, Subject, record_overview};
+use inspect::{Options, Recorder, Sink, record_overview};
 use rerun::StoreKind;
 use rerun::log::Chunk;
 use rerun::log::LogMsg;
-use servo::TickRecord;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
-use std::time::Duration;
-
-const PATIENCE: Duration = Duration::from_secs(30);
-
-/// Records to memory and returns the messages.
-fn record(subject: &Subject, ticks: &[TickRecord]) -> Vec<LogMsg> {
-    let (mut recorder, storage) = Recorder::in_memory(subject.clone(), &Options::default()).expect("memory takes all");
-    for tick in ticks {
-        recorder.tick(tick).expect("a finite record");
-    }
-    recorder.finish(PATIENCE).expect("memory is quick");
-    storage.take()
-}
-
-/// The chunks of one store by entity.
-fn chunks(messages: &[LogMsg], kind: StoreKind) -> BTreeMap<String, Vec<Chunk>> {
-    let mut by_entity: BTreeMap<String, Vec<Chunk>> = BTreeMap::new();
-    for message in messages {
-        if let LogMsg::ArrowMsg(store, arrow) = message
-            && store.kind() == kind
-        {
-            let chunk = Chunk::from_arrow_msg(arrow).expect("our own chunk");
-            by_entity.entry(chunk.entity_path().to_string()).or_default().push(chunk);
-        }
-    }
-    by_entity
-}
+use support::{PATIENCE, chunks, record};
 
 /// Rows of an entity that carry `component`, and whether all have both time lines.
 fn rows(chunks: &BTreeMap<String, Vec<Chunk>>, entity: &str, component: &str) -> usize {
@@ -88,14 +61,32 @@ fn the_layout_travels_with_the_recording() {
     let subject = support::peg_on_plate();
     let messages = record(&subject, &support::run(&subject, 10));
     let layout = chunks(&messages, StoreKind::Blueprint);
-    let views = layout.keys().filter(|path| path.starts_with("/view/") && path.matches('/').count() == 2).count();
     // Two spaces, the legend, five plots, the lanes, two graphs and the events.
-    assert_eq!(views, 12);
+    assert_eq!(views(&layout), 12);
     assert!(layout.contains_key("/viewport") && layout.contains_key("/time_panel"));
     assert!(
         messages.iter().any(|m| matches!(m, LogMsg::BlueprintActivationCommand(_))),
         "the layout is not made active"
     );
+}
+
+fn views(layout: &BTreeMap<String, Vec<Chunk>>) -> usize {
+    layout.keys().filter(|path| path.starts_with("/view/") && path.matches('/').count() == 2).count()
+}
+
+#[test]
+fn a_motion_that_was_not_timed_has_no_plot_of_times() {
+    let subject = support::peg_on_plate();
+    let mut ticks = support::run(&subject, 10);
+    for tick in &mut ticks {
+        (tick.wakeup_ns, tick.compute_ns) = (0, 0);
+    }
+    assert_eq!(views(&chunks(&record(&subject, &ticks), StoreKind::Blueprint)), 11);
+}
+
+#[test]
+fn a_recording_without_a_tick_has_a_layout() {
+    assert_eq!(views(&chunks(&record(&support::peg_on_plate(), &[]), StoreKind::Blueprint)), 12);
 }
 
 #[test]

@@ -1,14 +1,46 @@
 //! A scripted run: a hand at a given pose, the contact found by exhaustive search, force by the paper's equations (1), (2).
 
+#![allow(dead_code, missing_docs)]
+
 use cspace::{FixedPart, Polyhedron, World, c_face_polygons, contact_point};
 use glam::{DQuat, DVec3};
 use haptics::{ContactFormation, ContactPoint, FormationKind, Gains};
-use inspect::Subject;
+use inspect::{Options, Recorder, Subject};
+use rerun::StoreKind;
+use rerun::log::{Chunk, LogMsg};
 use servo::{Health, TickInput, TickRecord};
 use spatial::{Pose, Stamp, Twist, Wrench};
+use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Duration;
 
 pub const STIFFNESS: f64 = 1000.0;
+/// No disk is slower.
+pub const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Records to memory and returns the messages.
+pub fn record(subject: &Subject, ticks: &[TickRecord]) -> Vec<LogMsg> {
+    let (mut recorder, storage) = Recorder::in_memory(subject.clone(), &Options::default()).expect("memory takes all");
+    for tick in ticks {
+        recorder.tick(tick).expect("a finite record");
+    }
+    recorder.finish(PATIENCE).expect("memory is quick");
+    storage.take()
+}
+
+/// The chunks of one store by entity.
+pub fn chunks(messages: &[LogMsg], kind: StoreKind) -> BTreeMap<String, Vec<Chunk>> {
+    let mut by_entity: BTreeMap<String, Vec<Chunk>> = BTreeMap::new();
+    for message in messages {
+        if let LogMsg::ArrowMsg(store, arrow) = message
+            && store.kind() == kind
+        {
+            let chunk = Chunk::from_arrow_msg(arrow).expect("our own chunk");
+            by_entity.entry(chunk.entity_path().to_string()).or_default().push(chunk);
+        }
+    }
+    by_entity
+}
 
 pub fn cuboid(half: DVec3, center: DVec3) -> Polyhedron {
     let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2 & 1));
@@ -109,4 +141,18 @@ pub fn run(subject: &Subject, ticks: u64) -> Vec<TickRecord> {
         record
     });
     records.collect()
+}
+
+/// A ball of about `faces` triangles.
+pub fn ball(faces: usize, radius: f64, center: DVec3) -> Arc<Polyhedron> {
+    let n = faces / 2 + 2;
+    let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    let spiral = (0..n).map(|i| {
+        let z = 1.0 - (2.0 * i as f64 + 1.0) / n as f64;
+        let (s, c) = (golden * i as f64).sin_cos();
+        DVec3::new((1.0 - z * z).sqrt() * c, (1.0 - z * z).sqrt() * s, z) * radius + center
+    });
+    let (vertices, triangles) = parry3d_f64::transformation::convex_hull(&spiral.collect::<Vec<_>>());
+    let faces: Vec<Vec<u32>> = triangles.iter().map(|t| t.to_vec()).collect();
+    Arc::new(Polyhedron::from_faces(&vertices, &faces).expect("a ball"))
 }
