@@ -92,7 +92,12 @@ fn parse_row(line: &str) -> Result<StampedPose, String> {
     if translation.abs().max_element() > 1e12 {
         return Err("the position is more than 1e12 m away".into());
     }
-    Ok(StampedPose { t, pose: Pose::new(translation, rotation * (1.0 / norm)) })
+    Ok(StampedPose { t, pose: with_unit_rotation(Pose::new(translation, rotation)) })
+}
+
+/// Files round: a rotation that is nearly one is made one, wherever the pose comes from.
+pub fn with_unit_rotation(pose: Pose) -> Pose {
+    Pose { rotation: pose.rotation * (1.0 / pose.rotation.length()), ..pose }
 }
 
 #[cfg(test)]

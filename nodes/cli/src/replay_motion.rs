@@ -1,5 +1,5 @@
 use crate::bag_scene::scene_of;
-use crate::csv_io::read_poses;
+use crate::csv_io::{read_poses, with_unit_rotation};
 use crate::failure::Failure;
 use bag::msg::{Message, PoseStamped, SceneDescription, ServoConfiguration, TickBatch};
 use bag::{BagError, BagReader, Damage, TickLog};
@@ -50,7 +50,7 @@ impl Motion {
         if log.poses.is_empty() {
             return Err(Failure::file(dir, "holds neither ticks nor poses"));
         }
-        let poses: Vec<_> = log.poses.iter().map(|(s, p)| (seconds(*s), *s, *p)).collect();
+        let poses: Vec<_> = log.poses.iter().map(|(s, p)| (seconds(*s), *s, with_unit_rotation(*p))).collect();
         Ok(Self { notes: damage_notes(&log.damage), ..Self::from_poses(&poses, config) })
     }
 

@@ -29,27 +29,34 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Someone's bag: the peg goes down on `/left/tool`, stays up on `/right/tool`.
-fn two_arms(dir: &Path) {
+/// Someone's bag: the peg goes down on `/left/tool`, stays up on `/right/tool`. The left hand's poses as CSV.
+fn two_arms(dir: &Path) -> String {
+    let mut csv = "t,x,y,z,qx,qy,qz,qw\n".to_owned();
     let mut writer = BagWriter::create(dir, BagOptions::default()).unwrap();
     let topics = ["/left/tool", "/right/tool"].map(|t| writer.add::<PoseStamped>(t, &[Qos::SENSOR_DATA]).unwrap());
     for i in 0..100i64 {
-        let stamp = Stamp(1_700_000_000_000_000_000 + i * 1_000_000);
+        let stamp = Stamp(1_000_000_000 + i * 1_000_000);
         for (k, &topic) in topics.iter().enumerate() {
             let z = if k == 0 { 0.016 - 2e-5 * i as f64 } else { 0.02 };
-            let pose = Pose::new(DVec3::new(0.018, 0.0, z), DQuat::IDENTITY);
+            let pose = Pose::new(DVec3::new(0.018, 0.0, z), DQuat::from_rotation_z(0.3 + 0.001 * i as f64));
+            if k == 0 {
+                let (p, q) = (pose.translation, pose.rotation);
+                let t = stamp.0 as f64 / 1e9;
+                csv += &format!("{t:?},{:?},{:?},{:?},{:?},{:?},{:?},{:?}\n", p.x, p.y, p.z, q.x, q.y, q.z, q.w);
+            }
             let header = Header { stamp: stamp.into(), frame_id: "world".into() };
             writer.write_message(topic, stamp, &PoseStamped { header, pose: pose.into() }).unwrap();
         }
     }
     writer.finish().unwrap();
+    csv
 }
 
 #[test]
 fn of_several_topics_of_poses_one_is_chosen_by_name() {
     let folder = tempfile::tempdir().unwrap();
     let (bag, out, scene) = (folder.path().join("arms"), folder.path().join("o.csv"), scene());
-    two_arms(&bag);
+    std::fs::write(folder.path().join("p.csv"), two_arms(&bag)).unwrap();
     let p = Path::new;
     let run = |more: &[&Path]| {
         let mut args = vec![p("--scene"), scene.as_path(), p("--bag"), bag.as_path(), p("--out"), out.as_path()];
@@ -67,6 +74,13 @@ fn of_several_topics_of_poses_one_is_chosen_by_name() {
         let csv = std::fs::read_to_string(&out).unwrap();
         assert_eq!(csv.lines().count(), 101);
         assert_eq!(csv.contains(",face-face,"), touches, "{topic}");
+        if touches {
+            // The same poses from a bag and from a file are the same motion, bit for bit.
+            let (poses, same) = (folder.path().join("p.csv"), folder.path().join("same.csv"));
+            let output = replay(&[p("--scene"), &scene, p("--poses"), &poses, p("--out"), &same]);
+            assert!(output.status.success());
+            assert!(std::fs::read_to_string(&same).unwrap() == csv);
+        }
     }
 }
 
@@ -75,7 +89,8 @@ fn outputs_are_whole_or_not_there_and_errors_name_the_users_file() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let (poses, scene, bag) = (at("p.csv"), scene(), at("bag"));
-    let text = "t,x,y,z,qx,qy,qz,qw\n0,0,0,0.02,0,0,0,1\n0.001,0,0,0.02,0,0,0,1\n0.001,9e9,0,-9e9,0,0,0,1\n1,0,0,0,1,0,0,0\n";
+    let text =
+        "t,x,y,z,qx,qy,qz,qw\n0,0,0,0.02,0,0,0,1\n0.001,0,0,0.02,0,0,0,1\n0.001,9e9,0,-9e9,0,0,0,1\n1,0,0,0,1,0,0,0\n";
     std::fs::write(&poses, text).unwrap();
     std::fs::create_dir(at("taken")).unwrap();
     let p = Path::new;
