@@ -307,7 +307,6 @@ impl<'a> Placed<'a> {
         let w = self.x + self.r * rod_a.origin - rod_b.origin;
         let distance = n.dot(w);
         let (e, under) = (-distance, (-distance).max(0.0));
-        let mut nearest = f64::NEG_INFINITY;
         let along_b = n.cross(c.dir_a);
         let width_b = along_b.dot(rod_b.dir);
         let (along_b, width_b) = if width_b < 0.0 { (-along_b, -width_b) } else { (along_b, width_b) };
@@ -328,37 +327,30 @@ impl<'a> Placed<'a> {
         let sine = width_b.max(width_a);
         let normal_turn = 1.4 / sine;
         let lever = self.a.radius + (1.0 + normal_turn) * (rod_a.length + rod_b.length + distance.abs());
-        // With tan(t/2) <= 1 / (1 + cos t) for the neighbour's angle, as long as the angle stays.
-        let lead = |s: f64, cosine: f64| (-s * (1.0 + cosine) - under) / (2.0 + cosine);
-        let mut room = lead(beyond_a[0], cosines_a[0])
-            .min(lead(beyond_a[1], cosines_a[1]))
-            .min(lead(beyond_b[0], cosines_b[0]))
-            .min(lead(beyond_b[1], cosines_b[1]));
-        room = (0.8 * room).min(0.25 * sine * lever);
+        // The worst of all sides: the one nearest to x, the sharpest angle to a neighbour.
+        let outermost = beyond_a[0].max(beyond_a[1]).max(beyond_b[0]).max(beyond_b[1]);
+        let least = cosines_a[0].min(cosines_a[1]).min(cosines_b[0]).min(cosines_b[1]);
+        let tan_half = ((1.0 - least) / (1.0 + least)).max(0.0).sqrt();
+        let mut room = (0.8 * (-outermost - under * tan_half) / (1.0 + tan_half)).min(0.25 * sine * lever);
         let turn = (1.0 + normal_turn) * room / lever;
+        if may_win(outermost + room, under + room, least - turn, 0.0) {
+            room = 0.0;
+        }
         for end in 0..2 {
             let (s, cosine) = (beyond_b[end], cosines_b[end]);
-            nearest = nearest.max(s);
-            if may_win(s + room, under + room, cosine - turn, 0.0) {
-                room = 0.0;
-            }
             if may_win(s, under, cosine, self.eps) {
                 *planes += 1;
                 let (next, m) = self.across_at_b(edge_a, edge_b, end, c);
                 best.offer(s, e, n, m, self.eps, next);
             }
             let (s, cosine) = (beyond_a[end], cosines_a[end]);
-            nearest = nearest.max(s);
-            if may_win(s + room, under + room, cosine - turn, 0.0) {
-                room = 0.0;
-            }
             if may_win(s, under, cosine, self.eps) {
                 *planes += 1;
                 let (next, m) = self.across_at_a(edge_a, edge_b, end, c);
                 best.offer(s, e, n, m, self.eps, next);
             }
         }
-        Sides { distance, inside: -nearest, room, lever, normal_turn }
+        Sides { distance, inside: -outermost, room, lever, normal_turn }
     }
 
     /// Across the side of a type-C C-face at an end of B's edge: along A's arc, in the cell of that vertex of B.
