@@ -59,6 +59,8 @@ fn system_tests(variables: &Variables) -> Result<Command> {
         .arg(&tests)
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .env("PYTHONUNBUFFERED", "1")
+        // A crash inside the middleware then says where.
+        .env("PYTHONFAULTHANDLER", "1")
         .env("CSPACE_HAPTICS_BIN", executables.folder()?)
         .env("CSPACE_HAPTICS_ROOT", workspace::root())
         .env("CSPACE_HAPTICS_TOOLS", tools)
