@@ -274,8 +274,10 @@ impl Scp {
         }
         for k in 0..self.around.pairs.len() {
             let s = self.around.pairs[k];
-            let inside = s.near.distance < -FREED;
             let known = self.touches.iter().position(|t| (t.part, t.piece) == (s.part, s.piece));
+            // One plane that holds is proof enough, though the tracker there may be on another side.
+            let held = |t: &Touch| t.plane.distance + t.plane.normal_w.dot(self.shift) >= -FREED;
+            let inside = s.near.distance < -FREED && !known.is_some_and(|i| held(&self.touches[i]));
             let loose = s.near.distance > FREED && known.is_some_and(|i| self.touches[i].push > 0.0);
             penetrates |= inside;
             if !(inside || loose || all && known.is_none()) {

@@ -3,8 +3,10 @@
 mod support;
 
 use haptics::{Gains, LawKind, RenderLaw, Renderer};
-use spatial::Pose;
-use support::{block, mm, pose, world};
+use rand::RngExt;
+use spatial::{DQuat, DVec3, Pose};
+use support::random::{body, prism, rng};
+use support::{block, cuboid, mm, pose, tetrahedron, world};
 
 /// Steps of at most about 1e-5 m and 1e-5 rad.
 fn motions() -> Vec<(&'static str, Vec<Pose>)> {
@@ -70,6 +72,78 @@ fn wrench_is_continuous_across_single_and_multiple_contacts() {
                 LawKind::Blended => assert!(f <= 0.03 && t <= 0.03, "{name}: {f} {t}"),
                 _ => {}
             }
+        }
+    }
+}
+
+/// Parts of every kind rocking on a plate and over its border on one of their faces, tilted by up to 0.05 rad, in steps of
+/// about 1e-5 m and rad.
+fn rocking(seed: u64) -> (std::sync::Arc<cspace::World>, Vec<Pose>) {
+    let mut rng = rng(seed);
+    let moving = match seed % 4 {
+        0 => block(mm(20.0, 16.0, 10.0)),
+        1 => tetrahedron(20e-3),
+        2 => prism(3 + (seed % 5) as usize, 20e-3, 12e-3),
+        _ => body(&mut rng, 20e-3),
+    };
+    let faces: Vec<_> = moving.faces().collect();
+    let plane = moving.face_plane(faces[rng.random_range(0..faces.len())]);
+    let down = DQuat::from_rotation_arc(plane.normal, -DVec3::Z);
+    let mut wave = || [rng.random_range(0.3..1.0), rng.random_range(0.6..1.8), rng.random_range(0.0..6.3)];
+    let waves: [[f64; 3]; 6] = std::array::from_fn(|_| wave());
+    let n = 40_000;
+    let path = (0..n).map(|i| {
+        let v = |k: usize| waves[k][0] * (waves[k][1] * 6.0 * f64::from(i) / f64::from(n) + waves[k][2]).sin();
+        let height = 1e3 * plane.distance - 0.5 + 1.2 * v(2);
+        let p = pose(20.0 * v(0), 18.0 * v(1), height, 0.05 * v(3), 0.05 * v(4), 0.1 * v(5));
+        Pose::new(p.translation, (p.rotation * down).normalize())
+    });
+    (world(moving, vec![cuboid(mm(-25.0, -20.0, -8.0), mm(25.0, 20.0, 0.0))]), path.collect())
+}
+
+#[test]
+fn torque_follows_the_force_on_parts_of_every_kind() {
+    for law in [LawKind::Blended, LawKind::Proxy] {
+        let gains = Gains { law, ..Gains::default() };
+        let (mut worst, mut turned, mut compared, mut over) = (0.0_f64, 0.0_f64, 0, 0);
+        for seed in 0..24 {
+            let (w, path) = rocking(seed);
+            let lever = w.moving[0].size();
+            let mut r = Renderer::new(w);
+            let outs: Vec<_> = path.iter().map(|p| r.render(p, &gains, 1e-3).wrench).collect();
+            let peak_f = outs.iter().map(|w| w.force.length()).fold(0.0, f64::max);
+            // A part whose middle stays above its contacts has next to no torque: a tenth of its lever is the least measure.
+            let peak = outs.iter().map(|w| w.torque.length()).fold(0.1 * lever * peak_f, f64::max);
+            if peak_f < 0.1 {
+                continue;
+            }
+            compared += 1;
+            let mut own = 0.0_f64;
+            for pair in outs.windows(2) {
+                let change = pair[1] - pair[0];
+                let step = (change.torque.length() - lever * change.force.length()) / peak;
+                if pair[0].force.cross(pair[1].force).length() <= 1e-3 * pair[0].force.length() * pair[1].force.length()
+                {
+                    own = own.max(step);
+                } else {
+                    // Another side has become the nearest: the force itself turns, and the contact region with it.
+                    turned = turned.max(step);
+                }
+            }
+            worst = worst.max(own);
+            over += u32::from(own > 0.03);
+        }
+        println!(
+            "{law:?}: the torque changes by at most {:.2} % of its peak more than the force asks; {:.2} % where the force turns",
+            100.0 * worst,
+            100.0 * turned
+        );
+        assert!(compared >= 16, "{law:?}: {compared}");
+        if law == LawKind::Proxy {
+            assert!(worst <= 0.01, "{worst}");
+        } else {
+            // One part lies with an edge along the plate's border to within milliradians: where the two cross runs along it.
+            assert!(over <= 1 && worst <= 0.08, "{over} parts over 3 %, worst {worst}");
         }
     }
 }
