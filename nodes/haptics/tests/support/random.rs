@@ -23,7 +23,7 @@ pub fn hull(points: &[DVec3]) -> Polyhedron {
 pub fn prism(n: usize, width: f64, height: f64) -> Polyhedron {
     let corner = |i: usize| {
         let a = (i / 2) as f64 / n as f64 * std::f64::consts::TAU;
-        DVec3::new(0.5 * width * a.cos(), 0.5 * width * a.sin(), if i % 2 == 0 { 0.5 } else { -0.5 } * height)
+        DVec3::new(0.5 * width * a.cos(), 0.5 * width * a.sin(), if i.is_multiple_of(2) { 0.5 } else { -0.5 } * height)
     };
     hull(&(0..2 * n).map(corner).collect::<Vec<_>>())
 }
