@@ -108,9 +108,9 @@ pub fn markdown(rows: &[Row]) -> String {
             g.name, g.mass, g.damping, g.stiffness, g.inertia, g.rotation_damping, g.rotation_stiffness
         );
     }
-    text += "\n**Stable**: over the last 0.2 s of 3 s the part moves no more than 2 encoder steps from peak to peak (a quantised \
-             spring has a limit cycle of about one), or no more than 0.8 of what it did after the knock and of what it did in \
-             between, without leaving the floor, and under the full force (the energy account is not exhausted then). The \
+    text += "\n**Stable**: over the last 0.2 s of 3 s the part moves no more than 4 encoder steps from peak to peak (a quantised \
+             spring, damped by its quantised rate, has a limit cycle of that size), or no more than 0.8 of what it did after the knock \
+             and of what it did in between, without leaving the floor, and under the full force (the energy account is not exhausted then). The \
              stiffness is raised in steps of 30 % until a run is not stable, then found within 2 %.\n\n\
              **Predicted**: what the check at start works out from mass, damping, delay and rate alone (`stability.*`, no \
              grip stiffness): the stiffness at which a root of the discrete loop meets the unit circle, with the virtual \

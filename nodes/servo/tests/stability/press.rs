@@ -32,8 +32,9 @@ const TWIST: f64 = 0.5 * PRESS * HALF;
 /// How long the motion is looked at after the knock and before the end, s.
 const LOOK: f64 = 0.2;
 
-/// Motion of no more than so many encoder steps is rest: a quantised spring has a limit cycle of that size.
-const REST: f64 = 2.0;
+/// Motion of no more than so many encoder steps is rest: a quantised spring has a limit cycle of one to two, with damping of
+/// its quantised rate beside it of up to four.
+const REST: f64 = 4.0;
 /// Larger motion must have died down to this share since the knock and since the middle, and must not leave the floor.
 const DYING: f64 = 0.8;
 
