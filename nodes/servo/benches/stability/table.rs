@@ -141,7 +141,7 @@ pub fn markdown(rows: &[Row]) -> String {
         "\n## Rocking on the floor, N.m/rad\n\n\
          All six freedoms, the hand twisting with half of what would turn the cube over. For `proxy` the rotational stiffness of \
          the coupling; for `blended` 2 F L^2 / blend_depth with F = {PRESS} N and L = 20 mm, of which the prediction is a lower \
-         bound: a flat face gives no torque until it has tilted by a quarter of blend_depth, and no more than F L / 2.\n\n\
+         bound: a flat face gives no torque until it has tilted by a quarter of blend_depth, and no more than F L / 2. The search ends at 200.\n\n\
          | law | grip | tick, ms | stable without | predicted | stable with control | predicted | times as stiff |\n\
          |---|---|---|---|---|---|---|---|\n"
     );
