@@ -9,16 +9,26 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 use rerun::external::re_sdk_types::blueprint::components::{BackgroundKind, Corner2D, PanelState, PlayState};
 use rerun::external::re_sdk_types::blueprint::datatypes::{TextLogColumn, TextLogColumnKind};
 use rerun::external::re_sdk_types::datatypes::{TimeInt, TimeRange, TimeRangeBoundary, Utf8, VisibleTimeRange};
-use rerun::{RecordingStream, RecordingStreamResult};
+use rerun::{RecordingStream, RecordingStreamResult, Transform3D};
 
 /// Length of the trail of `x` in the C-space view.
 const TRAIL_SECONDS: i64 = 3;
 
-fn view_3d(title: &str, root: &str, eye: &Eye) -> View {
-    View::new("3D", title, root)
+/// A 3D view of what is below `root`. Tiny bodies are enlarged by a transform of the root, seen from outside it: their
+/// own coordinates stay metres.
+fn view_3d(stream: &RecordingStream, title: &str, root: &str, eye: &Eye) -> RecordingStreamResult<View> {
+    let enlargement = eye.enlargement();
+    let view = if enlargement == 1.0 {
+        View::new("3D", title, root)
+    } else {
+        stream.log_static(root, &Transform3D::from_scale(enlargement as f32))?;
+        View::new("3D", title, "/").showing(root)
+    };
+    let view = view
         .with("EyeControls3D", eye.controls())
         .with("LineGrid3D", LineGrid3D::new().with_visible(false))
-        .with("Background", Background::new(BackgroundKind::SolidColor).with_color(palette::solid(palette::GROUND)))
+        .with("Background", Background::new(BackgroundKind::SolidColor).with_color(palette::solid(palette::GROUND)));
+    Ok(view)
 }
 
 fn legend_view() -> View {
@@ -65,8 +75,8 @@ fn trail_range() -> VisibleTimeRanges {
 
 /// Sends the layout of a run; `timed`: whether its ticks were timed, which those of a replayed motion are not.
 pub(crate) fn send_run(stream: &RecordingStream, eyes: &Eyes, timed: bool) -> RecordingStreamResult<()> {
-    let physical = view_3d("Physical space [m]", physical::ROOT, &eyes.physical);
-    let cspace = view_3d("C-space at the present orientation [m]", cspace_view::ROOT, &eyes.cspace)
+    let physical = view_3d(stream, "Physical space [m]", physical::ROOT, &eyes.physical)?;
+    let cspace = view_3d(stream, "C-space at the present orientation [m]", cspace_view::ROOT, &eyes.cspace)?
         .entity(cspace_view::TRAIL, trail_range());
     let plots = series::PLOTS.iter().filter(|plot| timed || plot.entity != series::TIMES).map(|plot| {
         let legend = PlotLegend::new().with_corner(Corner2D::LeftTop);
@@ -88,8 +98,9 @@ pub(crate) fn send_run(stream: &RecordingStream, eyes: &Eyes, timed: bool) -> Re
 
 /// Sends the layout of a scene without a run, its sweep on the time line `sweep`.
 pub(crate) fn send_overview(stream: &RecordingStream, eyes: &Eyes, sweep: &str) -> RecordingStreamResult<()> {
-    let physical = view_3d("Physical space [m]: parts and convex pieces", physical::ROOT, &eyes.physical);
-    let cspace = view_3d("C-space [m]: C-obstacles at the orientation of the sweep", cspace_view::ROOT, &eyes.cspace);
+    let physical = view_3d(stream, "Physical space [m]: parts and convex pieces", physical::ROOT, &eyes.physical)?;
+    let cspace =
+        view_3d(stream, "C-space [m]: C-obstacles at the orientation of the sweep", cspace_view::ROOT, &eyes.cspace)?;
     let spaces = Node::Row(vec![(1.0, Node::View(physical)), (1.0, Node::View(cspace))]);
     let root = Node::Column(vec![(8.0, spaces), (1.0, Node::View(legend_view()))]);
     let panel = TimePanelBlueprint::new().with_state(PanelState::Collapsed).with_timeline(sweep);

@@ -9,6 +9,8 @@ const TAN_HALF_VIEW: f64 = 0.52;
 const ASPECT: f64 = 1.35;
 /// The part of the view that the bodies may fill.
 const FILL: f64 = 0.93;
+/// An eye as near as this (metres) asks for enlarged bodies.
+const CLOSE: f64 = 0.1;
 /// How far to the side, back and up the eye stands.
 const STAND: [f64; 3] = [0.62, 0.68, 0.46];
 
@@ -39,10 +41,19 @@ impl Eye {
         Self { position: target + back * distance, target }
     }
 
+    /// How many times larger than they are the bodies must be drawn: the viewer draws nothing that is nearer to the eye
+    /// than some centimetres.
+    pub(crate) fn enlargement(&self) -> f64 {
+        let distance = self.position.distance(self.target);
+        if distance < CLOSE { 1.0 / distance } else { 1.0 }
+    }
+
+    /// The eye as the viewer takes it, in a view that is enlarged so.
     pub(crate) fn controls(&self) -> EyeControls3D {
+        let enlargement = self.enlargement();
         EyeControls3D::new()
-            .with_position(self.position.as_vec3().to_array())
-            .with_look_target(self.target.as_vec3().to_array())
+            .with_position((self.position * enlargement).as_vec3().to_array())
+            .with_look_target((self.target * enlargement).as_vec3().to_array())
             .with_eye_up([0.0, 0.0, 1.0])
     }
 }

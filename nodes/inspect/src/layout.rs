@@ -47,6 +47,12 @@ impl View {
         self
     }
 
+    /// Shows this entity and what is below it, instead of everything below the origin.
+    pub(crate) fn showing(mut self, root: &str) -> Self {
+        self.contents = vec![format!("{root}/**")];
+        self
+    }
+
     /// A property of one entity in this view.
     pub(crate) fn entity(mut self, path: &str, property: impl AsComponents + 'static) -> Self {
         self.entities.push((path.into(), Box::new(property)));

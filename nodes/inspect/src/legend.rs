@@ -19,8 +19,8 @@ pub(crate) fn bounds() -> ([f64; 2], [f64; 2]) {
 
 /// Explains every colour that the views use.
 pub(crate) fn open(stream: &RecordingStream, scale: &ArrowScale) -> RecordingStreamResult<()> {
-    let force = format!("force, {} mm/N", scale.force * 1e3);
-    let torque = format!("torque, {} mm/N.m", scale.torque * 1e3);
+    let force = format!("force, {} mm/N", millimetres(scale.force));
+    let torque = format!("torque, {} mm/N.m", millimetres(scale.torque));
     let entries: [(&str, palette::Rgb); 10] = [
         ("C-face in contact", palette::TOUCHING),
         ("Near", palette::NEAR),
@@ -34,6 +34,11 @@ pub(crate) fn open(stream: &RecordingStream, scale: &ArrowScale) -> RecordingStr
         ("contact region", palette::TOUCHING),
     ];
     draw(stream, &entries)
+}
+
+/// Of a length in metres, without the last digits' rounding.
+fn millimetres(length: f64) -> f64 {
+    (length * 1e12).round() / 1e9
 }
 
 /// The legend of a scene without a run.

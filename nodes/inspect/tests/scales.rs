@@ -5,9 +5,10 @@ mod support;
 use cspace::{FixedPart, World};
 use glam::DVec3;
 use inspect::{Options, Recorder, Sink, Subject, record_overview};
+use rerun::StoreKind;
 use spatial::{DQuat, Pose};
 use std::sync::Arc;
-use support::{PATIENCE, ball, cuboid, tick};
+use support::{PATIENCE, ball, chunks, cuboid, record, tick};
 
 /// A box in the hand above two obstacles, of which one has two pieces, all `scale` times the size of a hand.
 fn subject(scale: f64) -> Subject {
@@ -45,6 +46,22 @@ fn tiny_and_huge_scenes_take_as_much_as_others() {
     for (i, size) in sizes.iter().enumerate() {
         for (bytes, usual) in size.iter().zip(&sizes[1]) {
             assert!(bytes * 2 > *usual && *bytes < 2 * usual, "scene {i}: {sizes:?}");
+        }
+    }
+}
+
+#[test]
+fn the_viewer_gets_tiny_bodies_enlarged() {
+    for (scale, enlarged) in [(1e-3, true), (1.0, false), (1e3, false)] {
+        let subject = subject(scale);
+        let hip = Pose::new(DVec3::new(0.0, 0.0, 0.3) * scale, DQuat::IDENTITY);
+        let messages = record(&subject, &[tick(&subject.world, 0, hip)]);
+        let recording = chunks(&messages, StoreKind::Recording);
+        for root in ["/physical_m", "/cspace_m"] {
+            let scaled = recording[root]
+                .iter()
+                .any(|chunk| chunk.components_identifiers().any(|component| component.as_str() == "Transform3D:scale"));
+            assert_eq!(scaled, enlarged, "{root} at {scale}");
         }
     }
 }
