@@ -45,6 +45,11 @@ impl Placed {
         Self { x: pose.translation, r: pose.rotation_matrix() }
     }
 
+    /// The same orientation, moved by `by`, axes of W.
+    pub fn shifted(&self, by: DVec3) -> Self {
+        Self { x: self.x + by, r: self.r }
+    }
+
     pub fn point(&self, p: DVec3) -> DVec3 {
         self.x + self.r * p
     }

@@ -184,6 +184,10 @@ impl Scp {
             {
                 // An equal plane adds nothing to the force, but its contacts belong to the region.
                 let again = !freed(&plane);
+                // Near may be a joint that the way out runs along; then the plane of any face is proof as well.
+                if again && solids.a_face_parts(part, piece, &placed.shifted(shift), FREED) {
+                    continue;
+                }
                 self.touch(solids, s.part, s.piece, plane);
                 if again {
                     self.projection.solve(&self.rows);

@@ -91,6 +91,23 @@ impl Solids {
         }
     }
 
+    /// Whether the plane of some face of either body, seam or not, has the other outside but for `slack` metres: proof that
+    /// the pair is free.
+    pub fn a_face_parts(&self, part: usize, piece: usize, placed: &Placed, slack: f64) -> bool {
+        let (a, b) = (self.part(part), self.piece(piece));
+        let into_a = placed.r.transpose();
+        b.faces().any(|f| {
+            let plane = b.face_plane(f);
+            let vertex = a.support(-(into_a * plane.normal));
+            plane.signed_distance(placed.point(a.vertex(vertex))) >= -slack
+        }) || a.faces().any(|f| {
+            let plane = a.face_plane(f);
+            let normal_w = -(placed.r * plane.normal);
+            let vertex = b.support(normal_w);
+            normal_w.dot(placed.x - b.vertex(vertex)) - plane.distance >= -slack
+        })
+    }
+
     /// Whether the pair's nearest plane is one of the uncut solids.
     pub fn is_felt(&self, part: usize, piece: usize, pose: &Pose, placed: &Placed, near: &CFace) -> bool {
         self.is_seamless(part, piece) || self.is_felt_plane(part, piece, pose, placed, near)
