@@ -31,8 +31,12 @@ pub fn settle_bindings(variables: &Variables) -> Result<()> {
         return Ok(());
     }
     let packages = ["-p", "r2r", "-p", "r2r_rcl", "-p", "r2r_msg_gen", "-p", "r2r_actions"];
-    let status = cargo().args(["clean", "--quiet"]).args(packages).status().context("cargo clean cannot be started")?;
-    anyhow::ensure!(status.success(), "cargo clean of r2r's bindings failed ({status})");
+    for profile in ["dev", "release"] {
+        let mut clean = cargo();
+        clean.args(["clean", "--quiet", "--profile", profile]).args(packages);
+        let status = clean.status().context("cargo clean cannot be started")?;
+        anyhow::ensure!(status.success(), "cargo clean of r2r's bindings failed ({status})");
+    }
     std::fs::create_dir_all(&target)
         .and_then(|()| std::fs::write(&stamp, identity))
         .with_context(|| format!("{} cannot be written", stamp.display()))
