@@ -26,7 +26,7 @@ pub fn bring() -> Result<Packaging> {
 
 fn cargo_ament_build() -> Result<PathBuf> {
     let root = workspace::cache()?.join(format!("cargo-ament-build-{CARGO_AMENT_BUILD}"));
-    once(&root, "cargo-ament-build from crates.io", || {
+    once(&root, "cargo-ament-build (cargo install)", || {
         let mut command = crate::cargo_build::cargo();
         // It copies files: nothing to optimise.
         command.args(["install", "--locked", "--debug", "--root"]).arg(&root);
