@@ -95,17 +95,8 @@ impl Solids {
     /// the pair is free.
     pub fn a_face_parts(&self, part: usize, piece: usize, placed: &Placed, slack: f64) -> bool {
         let (a, b) = (self.part(part), self.piece(piece));
-        let into_a = placed.r.transpose();
-        b.faces().any(|f| {
-            let plane = b.face_plane(f);
-            let vertex = a.support(-(into_a * plane.normal));
-            plane.signed_distance(placed.point(a.vertex(vertex))) >= -slack
-        }) || a.faces().any(|f| {
-            let plane = a.face_plane(f);
-            let normal_w = -(placed.r * plane.normal);
-            let vertex = b.support(normal_w);
-            normal_w.dot(placed.x - b.vertex(vertex)) - plane.distance >= -slack
-        })
+        b.faces().any(|f| plane_of_face_b(a, b, placed, f).distance >= -slack)
+            || a.faces().any(|f| plane_of_face_a(a, b, placed, f).distance >= -slack)
     }
 
     /// Whether the pair's nearest plane is one of the uncut solids.
@@ -155,21 +146,17 @@ impl Solids {
         // A body holds a ball: its support lies at least as far behind a plane.
         let (ball_a, ball_b) = (a.inner_radius(), b.inner_radius());
         let known = best.map_or(f64::NEG_INFINITY, |f| f.distance);
-        let mut offer = |contact: BasicContact, normal_w: DVec3, distance: f64| {
-            let face = CFace { contact, normal_w, distance };
-            if best.is_none_or(|o| distance > o.distance) && self.is_felt_plane(part, piece, pose, placed, &face) {
+        let mut offer = |face: CFace| {
+            if best.is_none_or(|o| face.distance > o.distance) && self.is_felt_plane(part, piece, pose, placed, &face) {
                 best = Some(face);
             }
         };
-        let into_a = placed.r.transpose();
         for face_b in b.faces().filter(|f| !self.is_internal_b(piece, *f)) {
             let plane = b.face_plane(face_b);
             if plane.signed_distance(center_a) - ball_a <= known {
                 continue;
             }
-            let vertex_a = a.support(-(into_a * plane.normal));
-            let distance = plane.signed_distance(placed.point(a.vertex(vertex_a)));
-            offer(BasicContact::TypeB { vertex_a, face_b }, plane.normal, distance);
+            offer(plane_of_face_b(a, b, placed, face_b));
         }
         for face_a in a.faces().filter(|f| !self.is_internal_a(part, *f)) {
             let plane = a.face_plane(face_a);
@@ -177,9 +164,7 @@ impl Solids {
             if normal_w.dot(placed.x - b.center()) - plane.distance - ball_b <= known {
                 continue;
             }
-            let vertex_b = b.support(normal_w);
-            let distance = normal_w.dot(placed.x - b.vertex(vertex_b)) - plane.distance;
-            offer(BasicContact::TypeA { face_a, vertex_b }, normal_w, distance);
+            offer(plane_of_face_a(a, b, placed, face_a));
         }
         if best.is_some_and(|f| f.distance >= tie) {
             return best;
@@ -209,6 +194,23 @@ impl Solids {
         }
         best
     }
+}
+
+/// The plane of a face of A against the vertex of B that it meets first: type A.
+fn plane_of_face_a(a: &Polyhedron, b: &Polyhedron, placed: &Placed, face_a: FaceId) -> CFace {
+    let plane = a.face_plane(face_a);
+    let normal_w = -(placed.r * plane.normal);
+    let vertex_b = b.support(normal_w);
+    let distance = normal_w.dot(placed.x - b.vertex(vertex_b)) - plane.distance;
+    CFace { contact: BasicContact::TypeA { face_a, vertex_b }, normal_w, distance }
+}
+
+/// The plane of a face of B against the vertex of A that it meets first: type B.
+fn plane_of_face_b(a: &Polyhedron, b: &Polyhedron, placed: &Placed, face_b: FaceId) -> CFace {
+    let plane = b.face_plane(face_b);
+    let vertex_a = a.support(-(placed.r.transpose() * plane.normal));
+    let distance = plane.signed_distance(placed.point(a.vertex(vertex_a)));
+    CFace { contact: BasicContact::TypeB { vertex_a, face_b }, normal_w: plane.normal, distance }
 }
 
 fn edges_of_a<'a>(a: &'a Polyhedron, c: &BasicContact) -> &'a [EdgeId] {
