@@ -2,6 +2,7 @@
 //! system, asked for once at the start, so that the loop itself does nothing but its work and one sleep.
 
 mod cadence;
+mod clearance;
 mod clock;
 mod histogram;
 mod idle;

@@ -1,3 +1,4 @@
+use crate::clearance::clear;
 use crate::idle::stay_awake;
 use rustix::mm::{MlockAllFlags, mlockall};
 use rustix::thread::{CpuSet, sched_setaffinity};
@@ -12,7 +13,7 @@ use thread_priority::{RealtimeThreadSchedulePolicy, ThreadPriority, ThreadSchedu
 pub struct ThreadSetup {
     /// `SCHED_FIFO` priority, 1 to 99; 0 asks for none.
     pub priority: u8,
-    /// The processor to stay on, from 0; -1 leaves it to the scheduler.
+    /// The processor to stay on, from 0, and the process' other threads off it; -1 leaves it to the scheduler.
     pub cpu: i32,
     /// Whether the process' memory shall be locked.
     pub lock_memory: bool,
@@ -104,7 +105,10 @@ fn pin(cpu: usize) -> Grant {
     let mut set = CpuSet::new();
     set.set(cpu);
     match sched_setaffinity(None, &set) {
-        Ok(()) => Grant::Granted,
+        Ok(()) => {
+            clear(cpu);
+            Grant::Granted
+        }
         Err(e) => refused(e, HOW_CPU),
     }
 }

@@ -480,7 +480,14 @@ static SCHEMA: &[ParamSpec] = &[
         [realtime.priority],
         "SCHED_FIFO priority of the servo thread; 0 for none."
     ),
-    int!("realtime.cpu", -1..1023, "", restart, [realtime.cpu], "CPU of the servo thread; -1 for any."),
+    int!(
+        "realtime.cpu",
+        -1..1023,
+        "",
+        restart,
+        [realtime.cpu],
+        "CPU of the servo thread, and the node's other threads off it; -1 for any."
+    ),
     param!(
         "realtime.lock_memory",
         Range::Bool,
