@@ -14,7 +14,8 @@
 
 use crate::BasicContact;
 use crate::inner_polytope::{InnerPolytope, Stuck, Weak};
-use crate::walk::{Found, Placed};
+use crate::placed::Placed;
+use crate::walk::Found;
 use spatial::DVec3;
 
 /// Most corners that the polygon on top may have; of a face with more, some are taken.
@@ -53,7 +54,7 @@ pub(crate) enum Verdict {
 /// The corners of the C-face of `contact` relative to `x`, counter-clockwise seen from outside; at most `TOP_CORNERS`.
 fn corners(placed: &Placed<'_>, found: &Found, out: &mut [DVec3; TOP_CORNERS]) -> usize {
     let (a, b) = (placed.a, placed.b);
-    let point = |va: u32, vb: u32| b.points[vb as usize] - placed.r * a.points[va as usize] - placed.x;
+    let point = |va: u32, vb: u32| b.points[vb as usize] - placed.turn_to_w(a.points[va as usize]) - placed.x();
     let pick = |sides: &[crate::body::Side], p: DVec3, out: &mut [DVec3; TOP_CORNERS], at: &dyn Fn(u32) -> DVec3| {
         let n = sides.len();
         if n <= TOP_CORNERS {
@@ -71,11 +72,11 @@ fn corners(placed: &Placed<'_>, found: &Found, out: &mut [DVec3; TOP_CORNERS]) -
     };
     match found.face.contact {
         BasicContact::TypeB { vertex_a: v, face_b: f } => {
-            let p = placed.x + placed.r * a.points[v.index()];
+            let p = placed.point_in_w(a.points[v.index()]);
             pick(b.sides(f.0), p, out, &|w| point(v.0, w))
         }
         BasicContact::TypeA { face_a: f, vertex_b: v } => {
-            let p = placed.rt * (b.points[v.index()] - placed.x);
+            let p = placed.point_in_a(b.points[v.index()]);
             let n = pick(a.sides(f.0), p, out, &|w| point(w, v.0));
             // Turned over: A's outward is the C-face's inward.
             out[..n].reverse();
@@ -104,8 +105,8 @@ struct Support {
 fn support(placed: &Placed<'_>, m: DVec3, planes: &mut u32) -> Support {
     *planes += 1;
     let b = placed.b.lowest_of_all(-m, planes);
-    let a = placed.a.lowest_of_all(placed.rt * m, planes);
-    let point = placed.b.points[b as usize] - placed.r * placed.a.points[a as usize] - placed.x;
+    let a = placed.a.lowest_of_all(placed.turn_to_a(m), planes);
+    let point = placed.b.points[b as usize] - placed.turn_to_w(placed.a.points[a as usize]) - placed.x();
     Support { point, depth: m.dot(point), a, b }
 }
 
@@ -114,7 +115,7 @@ pub(crate) fn audit(placed: &Placed<'_>, near: &Found, scratch: &mut AuditScratc
     let n = near.face.normal_w;
     let e = -near.face.distance;
     let size = placed.a.radius + placed.b.radius;
-    let tolerance = 4e-13 * size + placed.eps;
+    let tolerance = 4e-13 * size + placed.eps();
     let polytope = &mut *scratch.polytope;
     let mut top = [DVec3::ZERO; TOP_CORNERS];
     let count = corners(placed, near, &mut top);

@@ -4,7 +4,7 @@ use spatial::DVec3;
 
 /// Turn of A's combinatorial directions, radians: breaks every exact alignment the same way everywhere, so that the
 /// cells of coplanar C-faces always tile the plane. It decides between ties only; planes and points are never turned.
-const TIE_BREAK: f64 = 2e-13;
+pub(crate) const TIE_BREAK: f64 = 2e-13;
 
 /// One side of a face: the line through an edge in the face's plane.
 #[derive(Clone, Copy, Debug)]
@@ -16,8 +16,6 @@ pub(crate) struct Side {
     pub offset: f64,
     /// Tangent of half the angle between this face's normal and the neighbour's.
     pub tan_half: f64,
-    /// `1 / (1 + tan_half)`.
-    pub tan_share: f64,
     /// The edge.
     pub edge: u32,
     /// The face across it.
@@ -91,7 +89,6 @@ impl Body {
                     out,
                     offset: out.dot(a).max(out.dot(b)),
                     tan_half,
-                    tan_share: 1.0 / (1.0 + tan_half),
                     edge: p.face_edges(f)[i].0,
                     face: p.face_faces(f)[i].0,
                     corner: ring[i].0,

@@ -1,7 +1,7 @@
 use crate::audit::AuditScratch;
 use crate::bvh::{Aabb, Bvh};
+use crate::placed::At;
 use crate::tracker::PairState;
-use crate::walk::At;
 use crate::{Body, Tracked, World};
 use spatial::{DVec3, Pose};
 use std::sync::Arc;
@@ -39,7 +39,8 @@ struct Part {
     odometer: f64,
     /// Odometer at which the view is out of date.
     view_until: f64,
-    last: Option<At>,
+    /// The last pose, and the part's centre there.
+    last: Option<(Pose, DVec3)>,
 }
 
 /// Tracks a manipulated body of several convex parts against many obstacle pieces.
@@ -148,12 +149,12 @@ impl BodyTracker {
 
 impl Part {
     /// Counts the way, and looks around when the view is out of date.
-    fn look(&mut self, tree: &Bvh, at: &At, margin: f64, overflow: &mut u32) {
-        let moved = self.last.map_or(f64::INFINITY, |last| {
-            let turn = 2.1 * self.body.radius * (at.pose.rotation - last.pose.rotation).length();
-            (at.center - last.center).length() + turn
+    fn look(&mut self, tree: &Bvh, at: &At<'_>, margin: f64, overflow: &mut u32) {
+        let moved = self.last.map_or(f64::INFINITY, |(pose, center)| {
+            let turn = 2.1 * self.body.radius * (at.pose.rotation - pose.rotation).length();
+            (at.center - center).length() + turn
         });
-        self.last = Some(*at);
+        self.last = Some((*at.pose, at.center));
         if moved.is_finite() {
             self.odometer += moved;
         }

@@ -1,5 +1,5 @@
 use crate::c_face_polygon::{Facet, Sum};
-use crate::walk::Placed;
+use crate::placed::{At, Placed};
 use crate::{BasicContact, CFacePolygon, Polyhedron, Tracker};
 use spatial::Pose;
 use std::collections::{BTreeSet, VecDeque};
@@ -18,7 +18,8 @@ impl Tracker {
     pub fn polygons_around_near(&self, pose: &Pose, most: usize) -> Vec<CFacePolygon> {
         let (body_a, body_b) = self.bodies();
         let Some(near) = self.near() else { return Vec::new() };
-        let placed = Placed::new(body_a, body_b, pose);
+        let at = At::new(body_a, pose);
+        let placed = Placed::new(body_a, body_b, &at);
         let sum = Sum::new(self.moving(), self.fixed(), pose.rotation);
         let mut facets: Vec<Facet> = Vec::new();
         let mut known = BTreeSet::new();

@@ -1,5 +1,5 @@
 use crate::c_face::{type_a, type_b, type_c};
-use crate::walk::Placed;
+use crate::placed::{At, Placed};
 use crate::{BasicContact, Body, Polyhedron};
 use spatial::Pose;
 
@@ -68,7 +68,8 @@ impl<'a> ContactGraph<'a> {
     /// if `contact` is not applicable there. Ties are broken the same way everywhere.
     #[must_use]
     pub fn facet_neighbors(&self, contact: BasicContact, pose: &Pose) -> Vec<BasicContact> {
-        let placed = Placed::new(&self.bodies.0, &self.bodies.1, pose);
+        let at = At::new(&self.bodies.0, pose);
+        let placed = Placed::new(&self.bodies.0, &self.bodies.1, &at);
         let mut out = Vec::new();
         if placed.holds(contact) {
             placed.each_neighbor(contact, |n| out.push(n));

@@ -28,3 +28,6 @@ id!(
     /// A vertex of a polyhedron.
     VertexId
 );
+
+/// No edge.
+pub(crate) const NO_EDGE: u32 = u32::MAX;

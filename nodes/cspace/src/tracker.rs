@@ -1,6 +1,7 @@
 use crate::audit::{AuditScratch, Verdict, audit};
-use crate::certificate::{Certificate, inscribed_ball_proves};
-use crate::walk::{At, Found, Placed};
+use crate::certificate::Certificate;
+use crate::placed::{At, Placed};
+use crate::walk::Found;
 use crate::{BasicContact, Body, CFace, Polyhedron};
 use spatial::{DVec3, Pose};
 use std::sync::Arc;
@@ -50,15 +51,17 @@ pub(crate) struct PairState {
     /// The globally nearest C-face when it is not the tracked one.
     rival: Option<BasicContact>,
     certificate: Certificate,
-    /// The pose at the last full step.
+    /// The pose that quick steps count from, and A's centre there.
     last: Pose,
     last_center: DVec3,
-    /// Square of the way that A may go from there while Near stays what it is, metres squared ([`Found::room`]).
-    room2: f64,
-    /// Square of what an angle counts for on that way, metres squared, with the factor from chord to angle.
-    lever2: f64,
-    /// Whether the depth is known to be the global one within that room.
-    proven: bool,
+    /// Square of the way that A's centre may go from there in quick steps, metres squared.
+    travel2: f64,
+    /// Square of the change of the quaternion up to which Near surely stays applicable.
+    chord2: f64,
+    /// The same, up to which a quick step does if Near is seen to be applicable.
+    known2: f64,
+    /// See [`Found::tan_half`].
+    tan_half: f64,
     seeded: bool,
 }
 
@@ -69,15 +72,17 @@ impl PairState {
         certificate: Certificate::NONE,
         last: Pose::IDENTITY,
         last_center: DVec3::ZERO,
-        room2: 0.0,
-        lever2: 0.0,
-        proven: false,
+        travel2: 0.0,
+        chord2: 0.0,
+        known2: 0.0,
+        tan_half: 0.0,
         seeded: false,
     };
 
     pub(crate) fn forget(&mut self) {
         self.seeded = false;
-        self.room2 = 0.0;
+        self.chord2 = 0.0;
+        self.known2 = 0.0;
     }
 
     pub(crate) fn is_seeded(&self) -> bool {
@@ -90,13 +95,16 @@ impl PairState {
 
     /// One step: see [`Tracker::step`].
     #[inline]
-    pub(crate) fn step(&mut self, a: &Body, b: &Body, scratch: &mut AuditScratch, at: &At) -> Tracked {
+    pub(crate) fn step(&mut self, a: &Body, b: &Body, scratch: &mut AuditScratch, at: &At<'_>) -> Tracked {
+        let placed = Placed::new(a, b, at);
         let travel2 = (at.center - self.last_center).length_squared();
-        // (u + v)^2 <= 2 u^2 + 2 v^2.
         let chord2 = (at.pose.rotation - self.last.rotation).length_squared();
-        if 2.0 * (travel2 + self.lever2 * chord2) < self.room2
-            && let Some(near) = Placed::steady_plane(a, b, at, self.near)
-            && (self.proven || near.distance > 0.0)
+        // A rival asks for more than a quick step.
+        let near_last = travel2 < self.travel2 && self.rival.is_none();
+        let steady = near_last && (chord2 < self.chord2 || chord2 < self.known2 && self.still_holds(&placed));
+        if steady
+            && let Some((near, inside)) = placed.stay(self.near, self.tan_half)
+            && (near.distance > 0.0 || self.certificate.proves(&placed, &near, inside))
         {
             let distance = near.distance;
             return Tracked {
@@ -108,57 +116,76 @@ impl PairState {
                 planes: 1,
             };
         }
-        self.full_step(a, b, scratch, at, travel2 + CHORD2 * a.radius * a.radius * chord2)
+        self.full_step(&placed, scratch, steady, travel2 + CHORD2 * a.radius * a.radius * chord2)
     }
 
-    /// A step that looks at Near's sides, and farther where they do not answer. `moved2`: the squares
-    /// of travel and turn since the last such step, added, metres squared.
-    fn full_step(&mut self, a: &Body, b: &Body, scratch: &mut AuditScratch, at: &At, moved2: f64) -> Tracked {
-        let placed = Placed::at(a, b, at);
-        let pose = &at.pose;
-        let limit = 0.5 * (a.inner_radius + b.inner_radius);
+    /// Whether Near is surely applicable.
+    #[inline(never)]
+    fn still_holds(&mut self, placed: &Placed<'_>) -> bool {
+        if let BasicContact::TypeC { edge_a, edge_b } = self.near {
+            return placed.still_cross(edge_a.0, edge_b.0);
+        }
+        let steady = placed.lead(self.near);
+        if steady > 0.0 {
+            self.stand(placed, steady, f64::INFINITY);
+        }
+        steady > 0.0
+    }
+
+    /// Quick steps count from here: Near stays applicable while A turns by no more than `steady`, and what is known of
+    /// its neighbours holds up to `known`, radians.
+    #[inline]
+    fn stand(&mut self, placed: &Placed<'_>, steady: f64, known: f64) {
+        // They must not add up to a jump.
+        let travel = 0.25 * jump(placed);
+        let turn = travel / placed.a.radius;
+        let chord2 = |angle: f64| angle * angle / CHORD2;
+        self.last = *placed.at.pose;
+        self.last_center = placed.at.center;
+        self.travel2 = travel * travel;
+        self.chord2 = chord2(steady.min(turn).max(0.0));
+        self.known2 = chord2(known.min(turn).max(0.0));
+    }
+
+    /// A step that looks at Near's neighbours, and farther where they do not answer. `steady`: Near is applicable.
+    /// `moved2`: the squares of travel and turn since the last such step, added, metres squared.
+    fn full_step(&mut self, placed: &Placed<'_>, scratch: &mut AuditScratch, steady: bool, moved2: f64) -> Tracked {
+        let (a, b) = (placed.a, placed.b);
+        let limit = jump(placed);
         let mut planes = 0;
         let mut reseeded = false;
-        if self.seeded && moved2 > limit * limit {
-            reseeded = self.follow_jump(a, b, pose, limit, &mut planes);
+        let jump = self.seeded && moved2 > limit * limit;
+        if jump {
+            reseeded = self.follow_jump(a, b, placed.at.pose, limit, &mut planes);
         }
         let mut near = if self.seeded {
-            placed.settle(self.near, STEP_MOVES, &mut planes)
+            placed.settle(self.near, steady && !jump, STEP_MOVES, &mut planes)
         } else {
             reseeded = true;
-            self.seed(&placed, pose, scratch, &mut planes)
+            self.seed(placed, scratch, &mut planes)
         };
         if !near.settled {
             reseeded = true;
-            near = self.seed(&placed, pose, scratch, &mut planes);
+            near = self.seed(placed, scratch, &mut planes);
         }
         let mut divergent = false;
-        let mut room = near.room.min(0.25 * limit).max(0.0);
-        self.proven = false;
         if near.face.distance > 0.0 {
             self.rival = None;
-        } else {
-            if self.rival.is_none() {
-                // The proof may reach as far as the walk's answer does, less far, or for this pose alone.
-                let rooms: &[f64] = if room > 0.0 { &[0.6, 0.2, 0.0] } else { &[0.0] };
-                let proof = rooms.iter().map(|part| part * room).find(|r| {
-                    inscribed_ball_proves(&placed, &near, *r) || self.certificate.holds(&placed, pose, &near, *r)
-                });
-                self.proven = proof.is_some();
-                room = proof.unwrap_or(0.0);
-            }
-            if !self.proven {
-                room = 0.0;
-                (near, divergent) = self.examine(&placed, pose, near, scratch, &mut reseeded, &mut planes);
-            }
+        } else if self.rival.is_some() || !self.proves(placed, &near) {
+            (near, divergent) = self.examine(placed, near, scratch, &mut reseeded, &mut planes);
         }
         self.near = near.face.contact;
-        self.room2 = room * room;
-        self.lever2 = CHORD2 * near.lever * near.lever;
-        self.last = *pose;
-        self.last_center = at.center;
+        self.tan_half = near.tan_half;
+        // Where an arc is nearly half a circle, the opposite of a crossing is hard to tell from it.
+        self.stand(placed, near.steady, if near.tan_half < 1.0 { near.known } else { 0.0 });
         let distance = near.face.distance;
         Tracked { near: near.face, depth: (-distance).max(0.0), distance, divergent, reseeded, planes }
+    }
+
+    /// Whether the depth of a settled node is known to be the global one.
+    fn proves(&self, placed: &Placed<'_>, near: &Found) -> bool {
+        self.certificate.proves(placed, &near.face, near.inside)
+            || near.settled && self.certificate.proves(placed, &near.face, placed.folded_disc(near))
     }
 
     /// Walks through poses between the last one and this one. True if that would take too many: then Near is lost.
@@ -173,7 +200,7 @@ impl PairState {
         }
         for i in 1..count as u32 {
             let between = self.last.interpolate(pose, f64::from(i) / count);
-            let found = Placed::new(a, b, &between).settle(self.near, STEP_MOVES, planes);
+            let found = Placed::new(a, b, &At::new(a, &between)).settle(self.near, false, STEP_MOVES, planes);
             self.near = found.face.contact;
         }
         false
@@ -181,13 +208,13 @@ impl PairState {
 
     /// A fresh Near from nothing: down from the line of centres, then to the globally nearest plane.
     #[cold]
-    fn seed(&mut self, placed: &Placed<'_>, pose: &Pose, scratch: &mut AuditScratch, planes: &mut u32) -> Found {
+    fn seed(&mut self, placed: &Placed<'_>, scratch: &mut AuditScratch, planes: &mut u32) -> Found {
         let (a, b) = (placed.a, placed.b);
-        let m = (placed.center - b.center).try_normalize().unwrap_or(DVec3::Z);
-        let va = a.lowest_of_all(placed.rt * m, planes);
+        let m = (placed.at.center - b.center).try_normalize().unwrap_or(DVec3::Z);
+        let va = a.lowest_of_all(placed.turn_to_a(m), planes);
         let vb = b.lowest_of_all(-m, planes);
         let moves = STEP_MOVES + (a.planes.len() + b.planes.len()) as u32;
-        let mut near = placed.settle(placed.node_from_direction(m, va, vb), moves, planes);
+        let mut near = placed.settle(placed.node_from_direction(m, va, vb), false, moves, planes);
         self.rival = None;
         self.certificate = Certificate::NONE;
         for _ in 0..MAX_RIVALS {
@@ -196,14 +223,14 @@ impl PairState {
             }
             match audit(placed, &near, scratch, planes) {
                 Verdict::Nearer { direction, a, b } => {
-                    let found = placed.settle(placed.node_from_direction(direction, a, b), moves, planes);
+                    let found = placed.settle(placed.node_from_direction(direction, a, b), false, moves, planes);
                     if !(found.face.distance > near.face.distance) {
                         break;
                     }
                     near = found;
                 }
                 Verdict::Proven { tan_half_cap, slack } => {
-                    self.certificate = Certificate::new(placed, pose, &near, tan_half_cap, slack);
+                    self.certificate = Certificate::new(placed, &near.face, tan_half_cap, slack);
                     break;
                 }
                 Verdict::Open => break,
@@ -218,7 +245,6 @@ impl PairState {
     fn examine(
         &mut self,
         placed: &Placed<'_>,
-        pose: &Pose,
         near: Found,
         scratch: &mut AuditScratch,
         reseeded: &mut bool,
@@ -227,8 +253,8 @@ impl PairState {
         // The rival is tracked like Near; it stops being one when it is no nearer.
         let mut best = near;
         if let Some(rival) = self.rival {
-            let found = placed.settle(rival, STEP_MOVES, planes);
-            if found.face.distance > near.face.distance + 2.0 * placed.eps {
+            let found = placed.settle(rival, false, STEP_MOVES, planes);
+            if found.face.distance > near.face.distance + 2.0 * placed.eps() {
                 best = found;
             } else {
                 self.rival = None;
@@ -242,18 +268,18 @@ impl PairState {
                 self.rival = None;
                 return (best, false);
             }
-            if inscribed_ball_proves(placed, &best, 0.0) || self.certificate.holds(placed, pose, &best, 0.0) {
+            if self.proves(placed, &best) {
                 proven = true;
                 break;
             }
             match audit(placed, &best, scratch, planes) {
                 Verdict::Proven { tan_half_cap, slack } => {
-                    self.certificate = Certificate::new(placed, pose, &best, tan_half_cap, slack);
+                    self.certificate = Certificate::new(placed, &best.face, tan_half_cap, slack);
                     proven = true;
                     break;
                 }
                 Verdict::Nearer { direction, a, b } => {
-                    let found = placed.settle(placed.node_from_direction(direction, a, b), STEP_MOVES, planes);
+                    let found = placed.settle(placed.node_from_direction(direction, a, b), false, STEP_MOVES, planes);
                     if !(found.face.distance > best.face.distance) {
                         break;
                     }
@@ -262,9 +288,15 @@ impl PairState {
                 Verdict::Open => break,
             }
         }
-        self.rival = (best.face.distance > near.face.distance + 2.0 * placed.eps).then_some(best.face.contact);
+        self.rival = (best.face.distance > near.face.distance + 2.0 * placed.eps()).then_some(best.face.contact);
         (near, self.rival.is_some() || !proven)
     }
+}
+
+/// The way between two poses that is followed with poses put between, metres.
+#[inline]
+fn jump(placed: &Placed<'_>) -> f64 {
+    0.5 * (placed.a.inner_radius + placed.b.inner_radius)
 }
 
 /// Tracks the contact of one pair of convex polyhedra (paper, section III): A moves, B stands in W.
@@ -325,7 +357,8 @@ impl Tracker {
     /// The local subgraph at the last pose (paper, section II.A): Near and the C-faces that share an edge with it.
     /// For pictures and tests; not needed by the step. Returns how many `out` received.
     pub fn local(&self, pose: &Pose, out: &mut [CFace]) -> usize {
-        let placed = Placed::new(&self.bodies.0, &self.bodies.1, pose);
+        let at = At::new(&self.bodies.0, pose);
+        let placed = Placed::new(&self.bodies.0, &self.bodies.1, &at);
         let mut count = 0;
         let mut push = |f: CFace| {
             if let Some(slot) = out.get_mut(count) {

@@ -15,6 +15,7 @@ impl Pose {
     pub const IDENTITY: Self = Self { translation: DVec3::ZERO, rotation: DQuat::IDENTITY };
 
     /// A pose from its origin (metres) and orientation (unit quaternion).
+    #[inline]
     #[must_use]
     pub const fn new(translation: DVec3, rotation: DQuat) -> Self {
         Self { translation, rotation }
@@ -27,12 +28,14 @@ impl Pose {
     }
 
     /// The outer coordinates of the inner point `p`.
+    #[inline]
     #[must_use]
     pub fn transform_point(&self, p: DVec3) -> DVec3 {
         self.translation + self.rotation * p
     }
 
     /// The outer components of the inner direction `v`.
+    #[inline]
     #[must_use]
     pub fn transform_vector(&self, v: DVec3) -> DVec3 {
         self.rotation * v
@@ -46,6 +49,7 @@ impl Pose {
     }
 
     /// Columns are the inner axes in the outer frame.
+    #[inline]
     #[must_use]
     pub fn rotation_matrix(&self) -> DMat3 {
         DMat3::from_quat(self.rotation)

@@ -1,0 +1,59 @@
+//! The quick step: Near is known to be applicable; is it still the one?
+
+use crate::crossing::true_normal;
+use crate::parallelogram::{Parallelogram, larger};
+use crate::placed::Placed;
+use crate::{BasicContact, Body, CFace};
+use spatial::DVec3;
+
+impl Placed<'_> {
+    /// The plane of an applicable node, and how far x's projection lies inside of the C-face's sides, metres; none if
+    /// a neighbour could have a larger signed distance, or where edges are too nearly parallel to be sure.
+    ///
+    /// `tan_half`: of two edges, tangent of half the angle that no neighbour's normal lies beyond.
+    #[inline]
+    pub(crate) fn stay(&self, node: BasicContact, tan_half: f64) -> Option<(CFace, f64)> {
+        let (normal_w, distance, inside) = match node {
+            BasicContact::TypeB { vertex_a, face_b } => {
+                let p = self.point_in_w(self.a.points[vertex_a.index()]);
+                let (distance, inside) = over_face(self.b, face_b.0, p)?;
+                (self.b.planes[face_b.index()].0, distance, inside)
+            }
+            BasicContact::TypeA { face_a, vertex_b } => {
+                let q = self.point_in_a(self.b.points[vertex_b.index()]);
+                let (distance, inside) = over_face(self.a, face_a.0, q)?;
+                (-self.turn_to_w(self.a.planes[face_a.index()].0), distance, inside)
+            }
+            BasicContact::TypeC { edge_a, edge_b } => {
+                let (rod_a, rod_b) = (&self.a.rods[edge_a.index()], &self.b.rods[edge_b.index()]);
+                let u = self.turn_to_w(rod_a.dir);
+                let n = true_normal(rod_b.faces.map(|f| self.b.planes[f as usize].0), u)?.normalize();
+                let w = self.between_edges(edge_a.0, edge_b.0);
+                let distance = n.dot(w);
+                let face = Parallelogram::new(n, w, (u, rod_a.length), (rod_b.dir, rod_b.length));
+                let outermost = face.outermost();
+                if !(outermost + (-distance).max(0.0) * tan_half <= 0.0) {
+                    return None;
+                }
+                (n, distance, -outermost)
+            }
+        };
+        Some((CFace { contact: node, normal_w, distance }, inside))
+    }
+}
+
+/// Distance of `p` (the face's frame) to a face's plane and how far its projection lies inside the face, metres; none
+/// if the plane across one of its sides could be nearer.
+#[inline(always)]
+fn over_face(body: &Body, face: u32, p: DVec3) -> Option<(f64, f64)> {
+    let (n, d) = body.planes[face as usize];
+    let distance = n.dot(p) - d;
+    let under = (-distance).max(0.0);
+    let (mut outermost, mut lead) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    for side in body.sides(face) {
+        let s = side.out.dot(p) - side.offset;
+        outermost = larger(outermost, s);
+        lead = larger(lead, s + under * side.tan_half);
+    }
+    (lead <= 0.0).then_some((distance, -outermost))
+}
