@@ -20,20 +20,25 @@ impl CFace {
     /// sign of a type-C normal is that of the arc between the two faces of `edge_b`; parallel edges take its middle.
     #[must_use]
     pub fn at(contact: BasicContact, a: &Polyhedron, b: &Polyhedron, pose: &Pose) -> Self {
-        let r = pose.rotation_matrix();
+        Self::at_turned(contact, a, b, pose.translation, &pose.rotation_matrix())
+    }
+
+    /// The same where A's origin is `x` (metres, W) and its axes are the columns of `r`.
+    #[must_use]
+    pub fn at_turned(contact: BasicContact, a: &Polyhedron, b: &Polyhedron, x: DVec3, r: &DMat3) -> Self {
         let (normal_w, distance) = match contact {
             BasicContact::TypeA { face_a, vertex_b } => {
                 let plane = a.face_plane(face_a);
-                let b_in_a = r.transpose() * (b.vertex(vertex_b) - pose.translation);
-                (-(r * plane.normal), plane.signed_distance(b_in_a))
+                let b_in_a = r.transpose() * (b.vertex(vertex_b) - x);
+                (-(*r * plane.normal), plane.signed_distance(b_in_a))
             }
             BasicContact::TypeB { vertex_a, face_b } => {
                 let plane = b.face_plane(face_b);
-                (plane.normal, plane.signed_distance(pose.translation + r * a.vertex(vertex_a)))
+                (plane.normal, plane.signed_distance(x + *r * a.vertex(vertex_a)))
             }
             BasicContact::TypeC { edge_a, edge_b } => {
-                let normal = edge_normal(contact, a, b, &r);
-                let on_a = pose.translation + r * a.vertex(a.edge(edge_a).vertices[0]);
+                let normal = edge_normal(contact, a, b, r);
+                let on_a = x + *r * a.vertex(a.edge(edge_a).vertices[0]);
                 (normal, normal.dot(on_a - b.vertex(b.edge(edge_b).vertices[0])))
             }
         };
@@ -59,10 +64,15 @@ fn edge_normal(contact: BasicContact, a: &Polyhedron, b: &Polyhedron, r: &DMat3)
 /// not for type C.
 #[must_use]
 pub fn is_applicable(contact: BasicContact, a: &Polyhedron, b: &Polyhedron, rotation: DQuat) -> bool {
-    let r = DMat3::from_quat(rotation);
+    is_applicable_turned(contact, a, b, &DMat3::from_quat(rotation))
+}
+
+/// The same where A's axes are the columns of `r`.
+#[must_use]
+pub fn is_applicable_turned(contact: BasicContact, a: &Polyhedron, b: &Polyhedron, r: &DMat3) -> bool {
     match contact {
         BasicContact::TypeA { face_a, vertex_b } => {
-            let n = -(r * a.face_plane(face_a).normal);
+            let n = -(*r * a.face_plane(face_a).normal);
             supports(b, vertex_b, n)
         }
         BasicContact::TypeB { vertex_a, face_b } => {
@@ -70,12 +80,12 @@ pub fn is_applicable(contact: BasicContact, a: &Polyhedron, b: &Polyhedron, rota
             supports(a, vertex_a, -n)
         }
         BasicContact::TypeC { edge_a, edge_b } => {
-            let (u, v) = (r * a.edge_direction(edge_a), b.edge_direction(edge_b));
+            let (u, v) = (*r * a.edge_direction(edge_a), b.edge_direction(edge_b));
             if u.cross(v).length() < PARALLEL {
                 return false;
             }
             let n = b.edge(edge_b).faces.map(|f| b.face_plane(f).normal);
-            let m = a.edge(edge_a).faces.map(|f| -(r * a.face_plane(f).normal));
+            let m = a.edge(edge_a).faces.map(|f| -(*r * a.face_plane(f).normal));
             let (p, q) = (n.map(|n| n.dot(u)), m.map(|m| m.dot(v)));
             // The arcs separate each other's ends, and they do so in the same hemisphere: antipodal arcs pass the
             // first two tests as well.
@@ -95,11 +105,17 @@ fn supports(p: &Polyhedron, v: VertexId, direction: DVec3) -> bool {
 /// to A's edge (the middle of B's edge if they are parallel).
 #[must_use]
 pub fn contact_point(contact: BasicContact, a: &Polyhedron, b: &Polyhedron, pose: &Pose) -> DVec3 {
+    contact_point_turned(contact, a, b, pose.translation, &pose.rotation_matrix())
+}
+
+/// The same where A's origin is `x` (metres, W) and its axes are the columns of `r`.
+#[must_use]
+pub fn contact_point_turned(contact: BasicContact, a: &Polyhedron, b: &Polyhedron, x: DVec3, r: &DMat3) -> DVec3 {
     match contact {
         BasicContact::TypeA { vertex_b, .. } => b.vertex(vertex_b),
-        BasicContact::TypeB { vertex_a, .. } => pose.transform_point(a.vertex(vertex_a)),
+        BasicContact::TypeB { vertex_a, .. } => x + *r * a.vertex(vertex_a),
         BasicContact::TypeC { edge_a, edge_b } => {
-            let [a0, a1] = a.edge(edge_a).vertices.map(|v| pose.transform_point(a.vertex(v)));
+            let [a0, a1] = a.edge(edge_a).vertices.map(|v| x + *r * a.vertex(v));
             let [b0, b1] = b.edge(edge_b).vertices.map(|v| b.vertex(v));
             let (u, v, w) = (a1 - a0, b1 - b0, b0 - a0);
             let (uu, uv, vv) = (u.dot(u), u.dot(v), v.dot(v));

@@ -34,7 +34,7 @@ mod world;
 
 pub(crate) use body::Body;
 pub use body_tracker::{ActivePair, BodyTracker, MAX_NEAR_PIECES};
-pub use c_face::{CFace, applicable_c_faces, contact_point, is_applicable};
+pub use c_face::{CFace, applicable_c_faces, contact_point, contact_point_turned, is_applicable, is_applicable_turned};
 pub use c_face_polygon::{CFacePolygon, c_face_polygons};
 pub use contact::BasicContact;
 pub use graph::ContactGraph;

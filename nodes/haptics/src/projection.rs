@@ -36,12 +36,18 @@ pub(crate) struct Projection<const N: usize> {
     pub contradictions: u32,
 }
 
+/// In two sums, which the processor adds side by side.
+#[inline]
 fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
-    let mut s = 0.0;
-    for i in 0..N {
-        s += a[i] * b[i];
+    let mut s = [0.0; 2];
+    for i in 0..N / 2 {
+        s[0] += a[2 * i] * b[2 * i];
+        s[1] += a[2 * i + 1] * b[2 * i + 1];
     }
-    s
+    if N % 2 == 1 {
+        s[0] += a[N - 1] * b[N - 1];
+    }
+    s[0] + s[1]
 }
 
 impl<const N: usize> Projection<N> {
@@ -64,6 +70,14 @@ impl<const N: usize> Projection<N> {
 
     /// Solves anew. `rows` of 64 or fewer are all honoured; further ones are looked at, too, but may be left violated.
     pub fn solve(&mut self, rows: &[Row<N>]) {
+        self.count = 0;
+        self.solve_again(rows);
+    }
+
+    /// Solves for rows that resemble the last ones: those that were active come first, as far as they are violated. The
+    /// minimiser is the same; where rows depend on each other, the last ones keep carrying.
+    pub fn solve_again(&mut self, rows: &[Row<N>]) {
+        let (known, known_count) = (self.active, self.count);
         self.z = [0.0; N];
         self.count = 0;
         self.contradictions = 0;
@@ -72,6 +86,13 @@ impl<const N: usize> Projection<N> {
         for (i, row) in rows.iter().enumerate().filter(|(_, r)| r.equality) {
             if !self.add(i, row, rows) {
                 self.contradictions += 1;
+            }
+        }
+        for &i in &known[..known_count] {
+            let Some(row) = rows.get(i).filter(|r| !r.equality) else { continue };
+            if dot(&row.normal, &self.z) - row.offset < -TOLERANCE && !self.active[..self.count].contains(&i) {
+                // A row that is refused here is met again below.
+                self.add(i, row, rows);
             }
         }
         // Each round either adds a row or refuses one; cycling is impossible in exact arithmetic, bounded in floating point.

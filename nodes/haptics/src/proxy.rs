@@ -52,29 +52,30 @@ impl Step {
     }
 }
 
-/// The coupling's metric: square roots of its stiffnesses.
+/// The coupling's metric: one over the square roots of its stiffnesses.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Metric {
-    pub root_f: f64,
-    pub root_r: f64,
+    per_root_f: f64,
+    per_root_r: f64,
 }
 
 impl Metric {
     fn new(gains: &Gains) -> Self {
         // A stiffness of zero would leave the proxy undetermined; the wrench is scaled by the true gains anyway.
-        Self { root_f: gains.stiffness.max(1e-6).sqrt(), root_r: gains.rotation_stiffness.max(1e-9).sqrt() }
+        let per_root = |stiffness: f64, least: f64| 1.0 / stiffness.max(least).sqrt();
+        Self { per_root_f: per_root(gains.stiffness, 1e-6), per_root_r: per_root(gains.rotation_stiffness, 1e-9) }
     }
 
     pub fn row(&self, normal: DVec3, moment: DVec3, offset: f64, goal: &Step, equality: bool) -> Row<6> {
-        let (n, m) = (normal / self.root_f, moment / self.root_r);
+        let (n, m) = (normal * self.per_root_f, moment * self.per_root_r);
         let offset = offset - normal.dot(goal.dp) - moment.dot(goal.dtheta);
         Row { normal: [n.x, n.y, n.z, m.x, m.y, m.z], offset, equality }
     }
 
     pub fn step(&self, z: &[f64; 6], goal: &Step) -> Step {
         Step {
-            dp: goal.dp + DVec3::new(z[0], z[1], z[2]) / self.root_f,
-            dtheta: goal.dtheta + DVec3::new(z[3], z[4], z[5]) / self.root_r,
+            dp: goal.dp + DVec3::new(z[0], z[1], z[2]) * self.per_root_f,
+            dtheta: goal.dtheta + DVec3::new(z[3], z[4], z[5]) * self.per_root_r,
         }
     }
 }
@@ -95,6 +96,7 @@ impl Proxy {
     /// Forgets the proxy; the next pose starts it anew.
     pub fn reset(&mut self) {
         self.last_hip = None;
+        self.projection = Projection::new();
         self.friction.reset();
         self.view.reset();
     }
@@ -232,7 +234,7 @@ impl Proxy {
             let arm = p.point_w - self.pose.translation;
             self.rows.push(metric.row(p.normal_w, arm.cross(p.normal_w), -p.gap, goal, false));
         }
-        self.projection.solve(&self.rows);
+        self.projection.solve_again(&self.rows);
         metric.step(&self.projection.z, goal)
     }
 

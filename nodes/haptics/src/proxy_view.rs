@@ -114,7 +114,7 @@ impl View {
             if s.near.distance > self.reach {
                 continue;
             }
-            if solids.is_felt(s.part as usize, s.piece as usize, pose, &placed, &s.near) {
+            if solids.is_felt(s.part as usize, s.piece as usize, &placed, &s.near) {
                 felt_penetration = felt_penetration.max(-s.near.distance);
                 self.list(solids, &s, &s.near, true, &placed);
             } else if s.near.distance > -PENETRATION && self.leans_on_open_face(solids, &s, &placed) {
@@ -135,7 +135,7 @@ impl View {
                 continue;
             }
             let Some(plane) =
-                solids.felt_plane(part, piece, pose, &placed, &s.near, &mut self.hints[part * self.pieces + piece])
+                solids.felt_plane(part, piece, &placed, &s.near, &mut self.hints[part * self.pieces + piece])
             else {
                 continue;
             };
@@ -166,6 +166,7 @@ impl View {
         let mut deepest = f64::INFINITY;
         let mut pairs = self.pairs.iter();
         let mut pair = pairs.next();
+        let r = pose.rotation_matrix();
         for (k, p) in self.points.iter_mut().enumerate() {
             while pair.is_some_and(|q| k >= q.end) {
                 pair = pairs.next();
@@ -178,7 +179,7 @@ impl View {
                 BasicContact::TypeC { edge_a, edge_b } => {
                     let Some(q) = pair else { continue };
                     let (a, b) = (solids.part(q.part as usize), solids.piece(q.piece as usize));
-                    p.follow_crossing(pose.rotation * a.edge_direction(edge_a), b.edge_direction(edge_b), motion);
+                    p.follow_crossing(r * a.edge_direction(edge_a), b.edge_direction(edge_b), motion);
                 }
             }
             deepest = deepest.min(p.gap);

@@ -53,6 +53,11 @@ impl Placed {
     pub fn point(&self, p: DVec3) -> DVec3 {
         self.x + self.r * p
     }
+
+    /// A point of W as A sees it.
+    pub fn into_a(&self, p: DVec3) -> DVec3 {
+        self.r.transpose() * (p - self.x)
+    }
 }
 
 /// Where an edge of the clipped polygon comes from: position in the ring of A's or of B's face.
@@ -88,6 +93,8 @@ pub(crate) struct Scope {
 pub(crate) struct Clipper {
     subject: Vec<Corner>,
     result: Vec<Corner>,
+    /// How far each corner of the subject lies beyond the side in hand, metres.
+    beyond: Vec<f64>,
     pairs: Vec<(FaceId, FaceId)>,
 }
 
@@ -110,6 +117,7 @@ impl Clipper {
         Self {
             subject: Vec::with_capacity(room),
             result: Vec::with_capacity(room),
+            beyond: Vec::with_capacity(room),
             pairs: Vec::with_capacity(MAX_PAIRS),
         }
     }
@@ -176,9 +184,9 @@ impl Clipper {
             self.clip(a, face_a, b, face_b, placed, along, same);
             let ring_a = (a.face_vertices(face_a), a.face_edges(face_a));
             let ring_b = (b.face_vertices(face_b), b.face_edges(face_b));
-            for k in 0..self.subject.len() {
-                let before = self.subject[(k + self.subject.len() - 1) % self.subject.len()].leaving;
-                let Corner { point, leaving } = self.subject[k];
+            let mut last = self.subject.last().map_or(Side::A(0), |c| c.leaving);
+            for &Corner { point, leaving } in &self.subject {
+                let before = std::mem::replace(&mut last, leaving);
                 let height = plane_b.signed_distance(point);
                 if height * lean > scope.reach && height > scope.reach {
                     continue;
@@ -197,7 +205,7 @@ impl Clipper {
                         // The corner that the two sides share; A's ring runs against B's, so they come in either order.
                         let n = ring_b.0.len();
                         let (i, j) = (i as usize, j as usize);
-                        let corner = if (i + 1) % n == j { j } else { i };
+                        let corner = if i + 1 == j || i + 1 == n && j == 0 { j } else { i };
                         let at = b.vertex(ring_b.0[corner]);
                         if i == j || [i, j].iter().any(|s| solids.goes_on_b(piece, face_b, *s, at)) {
                             continue;
@@ -249,24 +257,29 @@ impl Clipper {
         for (i, v) in a.face_vertices(face_a).iter().enumerate() {
             self.subject.push(Corner { point: placed.point(a.vertex(*v)), leaving: Side::A(i as u16) });
         }
-        let ring_b = b.face_vertices(face_b);
-        for j in 0..ring_b.len() {
-            let start = b.vertex(ring_b[j]);
-            let along = b.vertex(ring_b[(j + 1) % ring_b.len()]) - start;
-            let inward = sight.cross(along);
-            let offset = inward.dot(start);
-            let tolerance = same * along.length();
+        let plane_b = b.face_plane(face_b);
+        let upright = plane_b.normal.dot(sight);
+        for (j, side) in b.face_sides(face_b).iter().enumerate() {
+            // The plane through the same edge and along the sight.
+            let lean = side.normal.dot(sight);
+            let outward = side.normal * upright - plane_b.normal * lean;
+            let offset = side.distance * upright - plane_b.distance * lean + same;
+            self.beyond.clear();
+            self.beyond.extend(self.subject.iter().map(|c| outward.dot(c.point) - offset));
+            if self.beyond.iter().all(|h| *h <= 0.0) {
+                continue;
+            }
             self.result.clear();
-            let n = self.subject.len();
-            for k in 0..n {
-                let (p, q) = (self.subject[k], self.subject[(k + 1) % n]);
-                let (hp, hq) = (inward.dot(p.point) - offset, inward.dot(q.point) - offset);
-                let (p_in, q_in) = (hp >= -tolerance, hq >= -tolerance);
-                let cut = || p.point + (q.point - p.point) * (hp / (hp - hq)).clamp(0.0, 1.0);
+            for k in 0..self.subject.len() {
+                let next = if k + 1 < self.subject.len() { k + 1 } else { 0 };
+                let (p, q) = (self.subject[k], self.subject[next]);
+                let (hp, hq) = (self.beyond[k], self.beyond[next]);
+                // Where the side's own line is crossed, which lies `same` within what still counts as inside.
+                let cut = || p.point + (q.point - p.point) * ((hp + same) / (hp - hq)).clamp(0.0, 1.0);
                 if self.result.len() + 2 > self.result.capacity() {
                     break;
                 }
-                match (p_in, q_in) {
+                match (hp <= 0.0, hq <= 0.0) {
                     (true, true) => self.result.push(p),
                     (true, false) => {
                         self.result.push(p);
@@ -364,13 +377,9 @@ fn crossing(
     normal_b: DVec3,
     height: f64,
 ) -> (DVec3, f64) {
-    let [a0, a1] = a.edge(edge_a).vertices;
-    let [b0, b1] = b.edge(edge_b).vertices;
-    let ua = *r * (a.vertex(a1) - a.vertex(a0));
-    let ub = b.vertex(b1) - b.vertex(b0);
-    let n = ua.cross(ub);
+    let n = (*r * a.edge_direction(edge_a)).cross(b.edge_direction(edge_b));
     let length = n.length();
-    if length <= PARALLEL_EDGES * ua.length() * ub.length() {
+    if length <= PARALLEL_EDGES {
         return (normal_b, height);
     }
     let lean = n.dot(normal_b) / length;
@@ -395,8 +404,7 @@ pub(crate) fn facing_point(
         }
         BasicContact::TypeA { face_a, vertex_b } => {
             let p = b.vertex(vertex_b);
-            let seen_from_a = placed.r.transpose() * (p - placed.x);
-            inside_ring(a, face_a, seen_from_a, tolerance).then_some(p)
+            inside_ring(a, face_a, placed.into_a(p), tolerance).then_some(p)
         }
         BasicContact::TypeC { edge_a, edge_b } => {
             let [a0, a1] = a.edge(edge_a).vertices;
@@ -420,11 +428,5 @@ pub(crate) fn facing_point(
 
 /// Whether the foot of `p` on the face's plane lies in the face, or outside by no more than `tolerance` metres.
 fn inside_ring(body: &Polyhedron, face: FaceId, p: DVec3, tolerance: f64) -> bool {
-    let ring = body.face_vertices(face);
-    let normal = body.face_plane(face).normal;
-    (0..ring.len()).all(|j| {
-        let start = body.vertex(ring[j]);
-        let along = body.vertex(ring[(j + 1) % ring.len()]) - start;
-        normal.cross(along).dot(p - start) >= -tolerance * along.length()
-    })
+    body.face_sides(face).iter().all(|side| side.signed_distance(p) <= tolerance)
 }

@@ -90,14 +90,14 @@ impl Scp {
     }
 
     /// The penetration of the hand's pose, metres, `>= 0`: the largest over the planes that count.
-    pub fn depth(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
+    pub fn depth(&mut self, solids: &Solids, pairs: &[Sensed], placed: &Placed) -> f64 {
         self.last = None;
-        self.project(solids, pairs, hip, placed)
+        self.project(solids, pairs, placed)
     }
 
     /// Finds the SCP and the planes that hold it, in `touches`; returns the depth as [`Scp::depth`] does.
     pub fn find(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
-        let depth = self.project(solids, pairs, hip, placed);
+        let depth = self.project(solids, pairs, placed);
         if depth <= 0.0 {
             self.last = None;
             return depth;
@@ -144,7 +144,7 @@ impl Scp {
     }
 
     /// Projection on the planes near the hand. Leaves planes in `touches`, multipliers in `projection`.
-    fn project(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
+    fn project(&mut self, solids: &Solids, pairs: &[Sensed], placed: &Placed) -> f64 {
         self.touches.clear();
         self.rows.clear();
         let deepest = pairs.iter().map(|p| -p.near.distance).fold(0.0, f64::max);
@@ -157,20 +157,20 @@ impl Scp {
             if s.near.distance > 2.0 * deepest {
                 continue;
             }
-            if solids.is_felt(s.part as usize, s.piece as usize, hip, placed, &s.near) {
+            if solids.is_felt(s.part as usize, s.piece as usize, placed, &s.near) {
                 self.touch(solids, s.part, s.piece, s.near);
             } else if s.near.distance < 0.0 {
                 self.unfelt.push(*s);
             }
         }
         self.projection.solve(&self.rows);
-        self.add_unfelt(solids, hip, placed);
+        self.add_unfelt(solids, placed);
         self.touches.iter().map(|t| -t.plane.distance).fold(0.0, f64::max)
     }
 
     /// A pair whose nearest plane is a seam needs a felt plane of its own only where the others do not free it anyway: one
     /// plane with `f >= 0` at the SCP, felt or not, proves freedom.
-    fn add_unfelt(&mut self, solids: &Solids, hip: &Pose, placed: &Placed) {
+    fn add_unfelt(&mut self, solids: &Solids, placed: &Placed) {
         for k in 0..self.unfelt.len() {
             let s = self.unfelt[k];
             let (part, piece) = (s.part as usize, s.piece as usize);
@@ -180,7 +180,7 @@ impl Scp {
                 continue;
             }
             if let Some(plane) =
-                solids.felt_plane(part, piece, hip, placed, &s.near, &mut self.hints[part * self.pieces + piece])
+                solids.felt_plane(part, piece, placed, &s.near, &mut self.hints[part * self.pieces + piece])
             {
                 // An equal plane adds nothing to the force, but its contacts belong to the region.
                 let again = !freed(&plane);
@@ -288,11 +288,11 @@ impl Scp {
                 continue;
             }
             let (part, piece) = (s.part as usize, s.piece as usize);
-            let felt = solids.is_felt(part, piece, there, &placed, &s.near);
+            let felt = solids.is_felt(part, piece, &placed, &s.near);
             let plane = if felt {
                 Some(s.near)
             } else {
-                solids.felt_plane(part, piece, there, &placed, &s.near, &mut self.hints[part * self.pieces + piece])
+                solids.felt_plane(part, piece, &placed, &s.near, &mut self.hints[part * self.pieces + piece])
             };
             let plane = plane.map(|c| CFace { distance: c.distance - c.normal_w.dot(self.shift), ..c });
             match (known, plane) {

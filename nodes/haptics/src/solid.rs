@@ -2,8 +2,10 @@
 
 use crate::region::Placed;
 use crate::seams::{Cover, Seams};
-use cspace::{BasicContact, CFace, EdgeId, FaceId, Polyhedron, World, contact_point, is_applicable};
-use spatial::{DVec3, Pose};
+use cspace::{
+    BasicContact, CFace, Edge, EdgeId, FaceId, Polyhedron, World, contact_point_turned, is_applicable_turned,
+};
+use spatial::DVec3;
 use std::sync::Arc;
 
 /// The world with the seams of both sides.
@@ -52,9 +54,9 @@ impl Solids {
     /// Whether the contact is one of the uncut solids. Vertices and edges are judged where they are; a face that is
     /// covered in part is felt while A's contact or A's middle stands over the open part. (The contact alone does not
     /// decide: deep in a corner it lies inside the other wall, and still this wall must push.)
-    fn is_felt_plane(&self, part: usize, piece: usize, pose: &Pose, placed: &Placed, c: &CFace) -> bool {
+    fn is_felt_plane(&self, part: usize, piece: usize, placed: &Placed, c: &CFace) -> bool {
         let (a, b) = (self.part(part), self.piece(piece));
-        let at = contact_point(c.contact, a, b, pose);
+        let at = contact_point_turned(c.contact, a, b, placed.x, &placed.r);
         let into_a = placed.r.transpose();
         let seen_from_a = |p: DVec3| into_a * (p - placed.x);
         match c.contact {
@@ -62,7 +64,7 @@ impl Solids {
                 let face_felt = match self.fixed.cover(piece, face_b) {
                     Cover::Open => true,
                     Cover::Internal => false,
-                    Cover::Partial => [at, pose.transform_point(a.center())]
+                    Cover::Partial => [at, placed.point(a.center())]
                         .iter()
                         .any(|p| !self.fixed.is_covered(piece, face_b, nearest_in_face(b, face_b, *p))),
                 };
@@ -95,13 +97,20 @@ impl Solids {
     /// the pair is free.
     pub fn a_face_parts(&self, part: usize, piece: usize, placed: &Placed, slack: f64) -> bool {
         let (a, b) = (self.part(part), self.piece(piece));
-        b.faces().any(|f| plane_of_face_b(a, b, placed, f).distance >= -slack)
-            || a.faces().any(|f| plane_of_face_a(a, b, placed, f).distance >= -slack)
+        let (center_a, center_b) = (placed.point(a.center()), placed.into_a(b.center()));
+        // A body lies between the ball it holds and the ball that holds it: that settles most planes.
+        b.faces().any(|f| {
+            let over = b.face_plane(f).signed_distance(center_a) + slack;
+            over >= a.inner_radius() && (over >= a.size() || plane_of_face_b(a, b, placed, f).distance >= -slack)
+        }) || a.faces().any(|f| {
+            let over = a.face_plane(f).signed_distance(center_b) + slack;
+            over >= b.inner_radius() && (over >= b.size() || plane_of_face_a(a, b, placed, f).distance >= -slack)
+        })
     }
 
     /// Whether the pair's nearest plane is one of the uncut solids.
-    pub fn is_felt(&self, part: usize, piece: usize, pose: &Pose, placed: &Placed, near: &CFace) -> bool {
-        self.is_seamless(part, piece) || self.is_felt_plane(part, piece, pose, placed, near)
+    pub fn is_felt(&self, part: usize, piece: usize, placed: &Placed, near: &CFace) -> bool {
+        self.is_seamless(part, piece) || self.is_felt_plane(part, piece, placed, near)
     }
 
     /// Where `near` is not felt: the felt C-face with the largest signed distance among the face contacts and, around the
@@ -111,17 +120,16 @@ impl Solids {
         &self,
         part: usize,
         piece: usize,
-        pose: &Pose,
         placed: &Placed,
         near: &CFace,
         hint: &mut Option<BasicContact>,
     ) -> Option<CFace> {
         let (a, b) = (self.part(part), self.piece(piece));
         let last = hint
-            .filter(|c| is_applicable(*c, a, b, pose.rotation))
-            .map(|c| CFace::at(c, a, b, pose))
-            .filter(|c| self.is_felt_plane(part, piece, pose, placed, c));
-        let best = self.felt_from(part, piece, pose, placed, near, last);
+            .filter(|c| is_applicable_turned(*c, a, b, &placed.r))
+            .map(|c| CFace::at_turned(c, a, b, placed.x, &placed.r))
+            .filter(|c| self.is_felt_plane(part, piece, placed, c));
+        let best = self.felt_from(part, piece, placed, near, last);
         *hint = best.map(|c| c.contact);
         best
     }
@@ -131,7 +139,6 @@ impl Solids {
         &self,
         part: usize,
         piece: usize,
-        pose: &Pose,
         placed: &Placed,
         near: &CFace,
         mut best: Option<CFace>,
@@ -142,29 +149,25 @@ impl Solids {
             return best;
         }
         let (a, b) = (self.part(part), self.piece(piece));
-        let center_a = pose.transform_point(a.center());
+        let (center_a, center_b) = (placed.point(a.center()), placed.into_a(b.center()));
         // A body holds a ball: its support lies at least as far behind a plane.
         let (ball_a, ball_b) = (a.inner_radius(), b.inner_radius());
-        let known = best.map_or(f64::NEG_INFINITY, |f| f.distance);
-        let mut offer = |face: CFace| {
-            if best.is_none_or(|o| face.distance > o.distance) && self.is_felt_plane(part, piece, pose, placed, &face) {
+        let mut known = best.map_or(f64::NEG_INFINITY, |f| f.distance);
+        let mut offer = |face: CFace, known: &mut f64| {
+            if face.distance > *known && self.is_felt_plane(part, piece, placed, &face) {
+                *known = face.distance;
                 best = Some(face);
             }
         };
         for face_b in b.faces().filter(|f| !self.is_internal_b(piece, *f)) {
-            let plane = b.face_plane(face_b);
-            if plane.signed_distance(center_a) - ball_a <= known {
-                continue;
+            if b.face_plane(face_b).signed_distance(center_a) - ball_a > known {
+                offer(plane_of_face_b(a, b, placed, face_b), &mut known);
             }
-            offer(plane_of_face_b(a, b, placed, face_b));
         }
         for face_a in a.faces().filter(|f| !self.is_internal_a(part, *f)) {
-            let plane = a.face_plane(face_a);
-            let normal_w = -(placed.r * plane.normal);
-            if normal_w.dot(placed.x - b.center()) - plane.distance - ball_b <= known {
-                continue;
+            if a.face_plane(face_a).signed_distance(center_b) - ball_b > known {
+                offer(plane_of_face_a(a, b, placed, face_a), &mut known);
             }
-            offer(plane_of_face_a(a, b, placed, face_a));
         }
         if best.is_some_and(|f| f.distance >= tie) {
             return best;
@@ -175,12 +178,17 @@ impl Solids {
             for _ in 0..4 {
                 let from = best;
                 for edge_a in edges_of_a(a, &at).iter().filter(|e| self.moving.is_live_edge(part, **e)) {
+                    let along_a = placed.r * a.edge_direction(*edge_a);
+                    let on_a = placed.point(a.vertex(a.edge(*edge_a).vertices[0]));
                     for edge_b in edges_of_b(b, &at).iter().filter(|e| self.fixed.is_live_edge(piece, **e)) {
+                        if best.is_some_and(|o| !may_better(along_a, on_a, b, *edge_b, o.distance)) {
+                            continue;
+                        }
                         let c = BasicContact::TypeC { edge_a: *edge_a, edge_b: *edge_b };
-                        let face = CFace::at(c, a, b, pose);
+                        let face = CFace::at_turned(c, a, b, placed.x, &placed.r);
                         if best.is_none_or(|o| face.distance > o.distance)
-                            && is_applicable(c, a, b, pose.rotation)
-                            && self.is_felt_plane(part, piece, pose, placed, &face)
+                            && is_applicable_turned(c, a, b, &placed.r)
+                            && self.is_felt_plane(part, piece, placed, &face)
                         {
                             best = Some(face);
                         }
@@ -194,6 +202,18 @@ impl Solids {
         }
         best
     }
+}
+
+/// Whether the plane of two edges can have a signed distance larger than `known`, metres, as far as the squares of both
+/// tell, which need no root. Parallel edges have none.
+#[inline]
+fn may_better(along_a: DVec3, on_a: DVec3, b: &Polyhedron, edge_b: EdgeId, known: f64) -> bool {
+    let Edge { vertices: [at_b, _], faces: [f, g] } = b.edge(edge_b);
+    let across = along_a.cross(b.edge_direction(edge_b));
+    let outward = across.dot(b.face_plane(f).normal + b.face_plane(g).normal);
+    let over = across.dot(on_a - b.vertex(at_b));
+    let over = if outward < 0.0 { -over } else { over };
+    over * over.abs() > known * known.abs() * across.length_squared()
 }
 
 /// The plane of a face of A against the vertex of B that it meets first: type A.
@@ -237,10 +257,8 @@ fn nearest_in_face(body: &Polyhedron, face: FaceId, p: DVec3) -> DVec3 {
     let foot = p - plane.normal * plane.signed_distance(p);
     // Towards the middle, as far as the side asks that cuts most.
     let mut share = 1.0_f64;
-    for j in 0..ring.len() {
-        let start = body.vertex(ring[j]);
-        let outward = (body.vertex(ring[(j + 1) % ring.len()]) - start).cross(plane.normal);
-        let (out, inside) = (outward.dot(foot - start), -outward.dot(middle - start));
+    for side in body.face_sides(face) {
+        let (out, inside) = (side.signed_distance(foot), -side.signed_distance(middle));
         if out > 0.0 {
             share = share.min(inside / (inside + out));
         }

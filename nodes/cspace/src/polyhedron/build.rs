@@ -295,15 +295,20 @@ fn link(vertices: &[DVec3], facets: &Facets<'_>, group: &[usize], loops: Vec<(us
         vertex_edges: rings.edges,
         vertex_vertices: rings.vertices,
         edge_edges,
+        edge_directions: Vec::new(),
+        corners: Vec::new(),
+        face_sides: Rows::new(),
         center: DVec3::ZERO,
         radius: 0.0,
         inner_radius: 0.0,
     };
+    p.corners = (0..p.vertices.len() as u32).map(VertexId).filter(|v| !p.vertex_edges(*v).is_empty()).collect();
     check_stars(&p, &loops, size)?;
     if !face_graph_connected(&p) {
         return Err(PolyhedronError::NotOneBody { face: 0 });
     }
     set_balls(&mut p);
+    p.find_directions();
     Ok(p)
 }
 

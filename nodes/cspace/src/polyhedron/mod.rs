@@ -65,6 +65,11 @@ pub struct Polyhedron {
     vertex_edges: Rows<EdgeId>,
     vertex_vertices: Rows<VertexId>,
     edge_edges: Rows<EdgeId>,
+    /// Unit, from first to second vertex.
+    edge_directions: Vec<DVec3>,
+    /// The vertices that some face uses, ascending.
+    corners: Vec<VertexId>,
+    face_sides: Rows<Plane>,
     center: DVec3,
     radius: f64,
     inner_radius: f64,
@@ -124,7 +129,7 @@ impl Polyhedron {
 
     /// All vertices that some face uses.
     pub fn corner_ids(&self) -> impl Iterator<Item = VertexId> + '_ {
-        (0..self.vertices.len() as u32).map(VertexId).filter(|v| !self.vertex_edges(*v).is_empty())
+        self.corners.iter().copied()
     }
 
     /// The plane of a face.
@@ -142,10 +147,26 @@ impl Polyhedron {
     }
 
     /// Unit direction of an edge from its first to its second vertex.
+    #[inline]
     #[must_use]
     pub fn edge_direction(&self, e: EdgeId) -> DVec3 {
-        let [a, b] = self.edge(e).vertices;
-        (self.vertex(b) - self.vertex(a)).normalize()
+        self.edge_directions[e.index()]
+    }
+
+    /// What follows from vertices and planes and is asked for all the time.
+    fn find_directions(&mut self) {
+        let direction = |e: &Edge| (self.vertex(e.vertices[1]) - self.vertex(e.vertices[0])).normalize();
+        self.edge_directions = self.edges.iter().map(direction).collect();
+        let mut sides = Rows::new();
+        for f in self.faces() {
+            let (ring, across) = (self.face_vertices(f), self.face_plane(f).normal);
+            sides.push_row((0..ring.len()).map(|i| {
+                let (a, b) = (self.vertex(ring[i]), self.vertex(ring[(i + 1) % ring.len()]));
+                let normal = (b - a).cross(across).normalize();
+                Plane { normal, distance: normal.dot(a).max(normal.dot(b)) }
+            }));
+        }
+        self.face_sides = sides;
     }
 
     /// `N_v(F)` of the appendix, counter-clockwise seen from outside.
@@ -160,6 +181,14 @@ impl Polyhedron {
     #[must_use]
     pub fn face_edges(&self, f: FaceId) -> &[EdgeId] {
         self.face_edges.row(f.index())
+    }
+
+    /// The planes that cut the face out of its own, one through each edge of [`Polyhedron::face_edges`]: across the face's
+    /// plane, their normals pointing out of the face.
+    #[inline]
+    #[must_use]
+    pub fn face_sides(&self, f: FaceId) -> &[Plane] {
+        self.face_sides.row(f.index())
     }
 
     /// `N_f(F)`: face `i` is the one across edge `i` of [`Polyhedron::face_edges`].
@@ -231,6 +260,7 @@ impl Polyhedron {
             }
             p.distance = distance;
         }
+        out.find_directions();
         out.center = pose.translation + r * (self.center * scale);
         out.radius = self.radius * scale;
         out.inner_radius = self.inner_radius * scale;
@@ -247,10 +277,10 @@ impl Polyhedron {
     #[must_use]
     pub fn support(&self, direction: DVec3) -> VertexId {
         let mut best = (f64::NEG_INFINITY, VertexId(0));
-        for v in self.corner_ids() {
-            let h = direction.dot(self.vertex(v));
+        for v in &self.corners {
+            let h = direction.dot(self.vertices[v.index()]);
             if h > best.0 {
-                best = (h, v);
+                best = (h, *v);
             }
         }
         best.1

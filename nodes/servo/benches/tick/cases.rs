@@ -1,0 +1,75 @@
+//! What the ticks are measured on: the peg over, in, and jammed in the paper's hole of five pieces.
+
+use device::Sample;
+use haptics::{Gains, LawKind};
+use scene::Scene;
+use servo::{Config, Tick, TickInput};
+use spatial::{DVec3, Pose, Stamp};
+use std::path::Path;
+
+/// Where the hand trembles.
+#[derive(Clone, Copy)]
+pub struct Case {
+    pub name: &'static str,
+    /// The middle of its trembling, metres.
+    place: DVec3,
+    /// How far it has turned the peg there, rotation vector, radians.
+    turn: DVec3,
+    seated: bool,
+}
+
+/// `free` hovers. `corner` pushes to the bottom and into a corner, 0.2 mm deep, so that the peg leans on two walls and the
+/// bottom. `jammed` also turns the peg about the vertical and about an edge, farther than the hole's clearance lets it:
+/// it stands against all four walls and the bottom, five pieces at once.
+pub const CASES: [Case; 3] = [
+    Case { name: "free", place: DVec3::new(0.0, 0.0, 0.03), turn: DVec3::ZERO, seated: false },
+    Case { name: "corner", place: DVec3::new(2e-4, 1.5e-4, 0.0058), turn: DVec3::ZERO, seated: true },
+    Case { name: "jammed", place: DVec3::new(0.0, 0.0, 0.0055), turn: DVec3::new(0.0, 0.05, 0.06), seated: true },
+];
+
+pub const LAWS: [LawKind; 4] = [LawKind::Paper, LawKind::Pstar, LawKind::Blended, LawKind::Proxy];
+
+/// Ticks in which the part is led to its place.
+const WAY: u64 = 500;
+
+fn input(i: u64, pose: Pose, law: LawKind) -> TickInput {
+    let stamp = Stamp(i as i64 * 1_000_000);
+    let sample = Sample { sequence: i + 1, stamp, pose, connected: true, ..Default::default() };
+    let gains = Gains { law, ..Gains::default() };
+    TickInput { sequence: i, stamp, dt: 1e-3, sample, gains, enabled: true, ..Default::default() }
+}
+
+/// A tick that has been led to the case's place through the mouth of the hole, as a hand would have brought the part.
+pub fn led_there(scene: &Scene, case: &Case, law: LawKind) -> Tick {
+    let mut tick = Tick::new(scene, &Config::default());
+    let start = DVec3::Z * 0.03;
+    for i in 0..WAY {
+        let s = i as f64 / WAY as f64;
+        let late = s.powi(8);
+        let through = if case.seated {
+            start.lerp(DVec3::Z * case.place.z, s) + case.place.with_z(0.0) * late
+        } else {
+            case.place
+        };
+        let pose = Pose::new(through, Pose::IDENTITY.rotation).moved(DVec3::ZERO, case.turn * late);
+        tick.step(&input(i, pose, law));
+    }
+    tick
+}
+
+/// The inputs of `ticks` ticks of trembling there: 0.05 mm and 5 mrad at a few hertz.
+pub fn trembling(case: &Case, law: LawKind, ticks: usize) -> Vec<TickInput> {
+    let middle = Pose::new(case.place, Pose::IDENTITY.rotation).moved(DVec3::ZERO, case.turn);
+    let at = |i: u64| {
+        let phase = i as f64 * 0.01;
+        let sway = DVec3::new(phase.sin(), phase.cos(), (1.3 * phase).sin()) * 5e-5;
+        let turn = DVec3::new((0.7 * phase).sin(), 0.0, (0.9 * phase).cos()) * 5e-3;
+        input(i, middle.moved(sway, turn), law)
+    };
+    (WAY..WAY + ticks as u64).map(at).collect()
+}
+
+pub fn peg_in_hole() -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config/scenes/peg_in_hole/scene.yaml");
+    Scene::load(&path).expect("the repository's scene")
+}
