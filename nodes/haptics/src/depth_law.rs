@@ -1,6 +1,7 @@
 //! The laws that read the wrench off the hand's own pose: `paper`, `pstar` and `blended`.
 
-use crate::paper_torque::{convex_hull, torque};
+use crate::facing::lone_contact;
+use crate::paper_torque::torque;
 use crate::reduced_hull::nearest_point;
 use crate::region::{Clipper, Placed, RegionPoint, Scope};
 use crate::scp::{Scp, TIED, Touch};
@@ -8,7 +9,6 @@ use crate::sense::Sensed;
 use crate::shares::Shares;
 use crate::solid::Solids;
 use crate::{ContactFormation, ContactPoint, FormationKind, Gains, LawKind};
-use cspace::BasicContact;
 use spatial::{DVec3, Pose, Wrench};
 
 /// Planes are one constraint when their normals differ by less than this (radians) and their offsets by this part of the part's size.
@@ -108,11 +108,16 @@ impl DepthLaw {
             }
             let (part, piece) = (t.part as usize, t.piece as usize);
             t.tie *= if was_multiple { 1.5 } else { 1.0 };
-            let limit = t.plane.distance + if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
+            let within = if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
+            let limit = t.plane.distance + within;
             t.first = self.points.len();
-            let scope =
-                Scope { reach: f64::INFINITY, near_felt: true, wide: law == LawKind::Blended, along_near: true };
-            self.clipper.region(solids, part, piece, placed, &t.plane, &scope, &mut self.points);
+            if let Some(lone) = lone_contact(solids.part(part), solids.piece(piece), placed, &t.plane, within) {
+                self.points.push(lone);
+            } else {
+                let scope =
+                    Scope { reach: f64::INFINITY, near_felt: true, wide: law == LawKind::Blended, along_near: true };
+                self.clipper.region(solids, part, piece, placed, &t.plane, &scope, &mut self.points);
+            }
             // How deep each contact is under Near's plane: along Near's normal none can be deeper than Near.
             let normal = t.plane.normal_w;
             let mut kept = t.first;
@@ -128,14 +133,8 @@ impl DepthLaw {
             t.end = self.points.len();
             self.places.clear();
             self.places.extend(self.points[t.first..t.end].iter().map(|p| p.point_w));
-            convex_hull(&self.places, t.plane.normal_w, &mut self.hull);
-            let kind = match (self.hull.len(), t.plane.contact) {
-                (0 | 1, BasicContact::TypeC { .. }) => FormationKind::EdgeEdge,
-                (0 | 1, _) => FormationKind::VertexFace,
-                (2, _) => FormationKind::EdgeFace,
-                _ => FormationKind::FaceFace,
-            };
-            self.multiple |= self.hull.len() > 1;
+            let kind = FormationKind::of(&self.places, t.plane.normal_w, t.plane.contact);
+            self.multiple |= kind >= FormationKind::EdgeFace;
             result.formation.kind = result.formation.kind.max(kind);
             for p in &self.points[t.first..t.end] {
                 let kept = result.formation.push(ContactPoint {

@@ -22,7 +22,35 @@ pub enum FormationKind {
     FaceFace = 4,
 }
 
+/// Points closer together than this, metres, are one; so are a point and a line, by this part of the points' extent.
+const ONE_PLACE: f64 = 1e-12;
+const ON_LINE: f64 = 1e-8;
+
 impl FormationKind {
+    /// The principal contact that the basic contacts of one pair make, from their points (metres, W) seen along `normal`: one
+    /// place, a line, or more. `contact` is the deepest of them.
+    pub(crate) fn of(points: &[DVec3], normal: DVec3, contact: BasicContact) -> Self {
+        let one = match contact {
+            BasicContact::TypeC { .. } => Self::EdgeEdge,
+            _ => Self::VertexFace,
+        };
+        let Some((first, others)) = points.split_first() else { return one };
+        let farthest = others.iter().fold(DVec3::ZERO, |far, p| {
+            let d = *p - *first;
+            if d.length_squared() > far.length_squared() { d } else { far }
+        });
+        let size2 = farthest.length_squared();
+        if size2 <= ONE_PLACE * ONE_PLACE {
+            return one;
+        }
+        let across = normal.cross(farthest);
+        if others.iter().any(|p| across.dot(*p - *first).abs() > ON_LINE * size2) {
+            Self::FaceFace
+        } else {
+            Self::EdgeFace
+        }
+    }
+
     /// The name in CSV files and pictures.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -5,6 +5,7 @@
 
 mod coupling;
 mod depth_law;
+mod facing;
 mod formation;
 mod friction;
 mod gains;

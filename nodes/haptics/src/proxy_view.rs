@@ -1,7 +1,6 @@
 //! What the proxy sees around it: the contacts of all pairs in reach, and how deep it penetrates.
 
 use crate::formation::{ContactFormation, ContactPoint, FormationKind};
-use crate::paper_torque::convex_hull;
 use crate::proxy::Step;
 use crate::region::{Clipper, Placed, RegionPoint, Scope, most_parallel};
 use crate::sense::{Sense, Sensed};
@@ -14,6 +13,8 @@ pub(crate) const PENETRATION: f64 = 1e-8;
 /// A contact takes place from this gap on and ends at the larger one, metres: the formation does not chatter.
 const TOUCHING: f64 = 1e-7;
 const LEAVING: f64 = 5e-7;
+/// A contact with a gap beyond this stays as it was seen while the proxy takes steps too small to look anew, metres.
+const OPEN: f64 = 1e-6;
 /// A felt plane of a piece whose nearest plane is a seam counts while it is violated by no more than this, metres.
 const BESIDE: f64 = 1e-6;
 /// Bounds of the reach, metres.
@@ -52,7 +53,6 @@ pub(crate) struct View {
     /// Pairs whose nearest plane at this look is a seam.
     unfelt: Vec<bool>,
     places: Vec<DVec3>,
-    hull: Vec<DVec3>,
     pieces: usize,
 }
 
@@ -83,7 +83,6 @@ impl View {
             hints: vec![None; pairs],
             unfelt: Vec::with_capacity(pairs),
             places: Vec::with_capacity(Self::ROOM),
-            hull: Vec::with_capacity(Self::ROOM),
             pieces: world.fixed.len(),
         }
     }
@@ -161,7 +160,7 @@ impl View {
         self.pairs.push(InReach { part: s.part, piece: s.piece, first, end: self.points.len() });
     }
 
-    /// Moves the contacts along with a small step to `pose`, to first order.
+    /// Moves the contacts along with a small step to `pose`, to first order: those that so small steps can close.
     pub fn shift(&mut self, solids: &Solids, step: &Step, pose: &Pose) {
         let mut deepest = f64::INFINITY;
         let mut pairs = self.pairs.iter();
@@ -170,6 +169,9 @@ impl View {
         for (k, p) in self.points.iter_mut().enumerate() {
             while pair.is_some_and(|q| k >= q.end) {
                 pair = pairs.next();
+            }
+            if p.gap > OPEN {
+                continue;
             }
             let motion = step.dp + step.dtheta.cross(p.point_w - pose.translation);
             p.gap += p.normal_w.dot(motion);
@@ -203,13 +205,7 @@ impl View {
             let Some(deepest) = points.iter().min_by(|p, q| p.gap.total_cmp(&q.gap)).filter(|p| p.gap <= limit) else {
                 continue;
             };
-            convex_hull(&self.places, deepest.normal_w, &mut self.hull);
-            let kind = match (self.hull.len(), deepest.contact) {
-                (0 | 1, BasicContact::TypeC { .. }) => FormationKind::EdgeEdge,
-                (0 | 1, _) => FormationKind::VertexFace,
-                (2, _) => FormationKind::EdgeFace,
-                _ => FormationKind::FaceFace,
-            };
+            let kind = FormationKind::of(&self.places, deepest.normal_w, deepest.contact);
             formation.kind = formation.kind.max(kind);
             for p in points.iter().filter(|p| p.gap <= limit) {
                 let kept = formation.push(ContactPoint {

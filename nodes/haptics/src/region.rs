@@ -1,5 +1,6 @@
 //! The contact region of a pair: the two faces in contact, clipped against each other, as basic contacts.
 
+use crate::facing::facing_point;
 use crate::solid::Solids;
 use cspace::{BasicContact, CFace, EdgeId, FaceId, Polyhedron, World};
 use spatial::{DMat3, DVec3, Pose};
@@ -143,8 +144,8 @@ impl Clipper {
         let own = if scope.near_felt { facing_point(a, b, placed, near, 1e3 * same) } else { None };
         if let Some(point_w) = own.filter(|_| near.distance <= scope.reach) {
             let (gap, normal_w) = (near.distance, near.normal_w);
-            let span_w = normal_w * gap;
-            push(RegionPoint { contact: near.contact, point_w, normal_w, gap, span_w }, scope.reach, same, first, out);
+            let own = RegionPoint { contact: near.contact, point_w, normal_w, gap, span_w: normal_w * gap };
+            push(own, same, [first; 2], out);
         }
         self.pairs.clear();
         if scope.wide {
@@ -182,6 +183,7 @@ impl Clipper {
         let slope = along.dot(plane_b.normal);
         if lean > 0.1 && slope > 0.1 && along.dot(normal_a) > 0.1 {
             self.clip(a, face_a, b, face_b, placed, along, same);
+            let ring = out.len();
             let ring_a = (a.face_vertices(face_a), a.face_edges(face_a));
             let ring_b = (b.face_vertices(face_b), b.face_edges(face_b));
             let mut last = self.subject.last().map_or(Side::A(0), |c| c.leaving);
@@ -233,8 +235,8 @@ impl Clipper {
                         }
                     }
                 };
-                if !own || found.contact != near.contact {
-                    push(found, scope.reach, same, first, out);
+                if found.gap <= scope.reach && (!own || found.contact != near.contact) {
+                    push(found, same, [first, ring], out);
                 }
             }
         }
@@ -297,10 +299,16 @@ impl Clipper {
     }
 }
 
-/// Keeps a contact unless it is out of reach, a duplicate, or there is no room. Of two contacts at one place the first stays.
-fn push(p: RegionPoint, reach: f64, same: f64, first: usize, out: &mut Vec<RegionPoint>) {
-    let room = out.len() < out.capacity();
-    if room && p.gap <= reach && !out[first..].iter().any(|o| o.point_w.distance_squared(p.point_w) <= same * same) {
+/// Keeps a contact unless it is a duplicate of one from `first` on or there is no room; of two at one place the first stays.
+/// From `ring` on they come in the order of a convex polygon's corners: there only neighbours can be at one place.
+fn push(p: RegionPoint, same: f64, [first, ring]: [usize; 2], out: &mut Vec<RegionPoint>) {
+    let there = |o: &RegionPoint| o.point_w.distance_squared(p.point_w) <= same * same;
+    let known = || {
+        out[first..ring].iter().any(there)
+            || out[ring..].first().is_some_and(there)
+            || out[ring..].last().is_some_and(there)
+    };
+    if out.len() < out.capacity() && !known() {
         out.push(p);
     }
 }
@@ -387,46 +395,4 @@ fn crossing(
         return (normal_b, height);
     }
     (n * (lean.signum() / length), height * lean.abs())
-}
-
-/// App of a basic contact on B's side if the two features face each other (within `tolerance` metres), else none.
-pub(crate) fn facing_point(
-    a: &Polyhedron,
-    b: &Polyhedron,
-    placed: &Placed,
-    c: &CFace,
-    tolerance: f64,
-) -> Option<DVec3> {
-    match c.contact {
-        BasicContact::TypeB { vertex_a, face_b } => {
-            let p = placed.point(a.vertex(vertex_a)) - c.normal_w * c.distance;
-            inside_ring(b, face_b, p, tolerance).then_some(p)
-        }
-        BasicContact::TypeA { face_a, vertex_b } => {
-            let p = b.vertex(vertex_b);
-            inside_ring(a, face_a, placed.into_a(p), tolerance).then_some(p)
-        }
-        BasicContact::TypeC { edge_a, edge_b } => {
-            let [a0, a1] = a.edge(edge_a).vertices;
-            let [b0, b1] = b.edge(edge_b).vertices;
-            let (a0, a1) = (placed.point(a.vertex(a0)), placed.point(a.vertex(a1)));
-            let (b0, b1) = (b.vertex(b0), b.vertex(b1));
-            let (ua, ub) = (a1 - a0, b1 - b0);
-            // Parameters of the closest points of the two lines.
-            let n = ua.cross(ub);
-            let nn = n.length_squared();
-            if nn <= 1e-24 * ua.length_squared() * ub.length_squared() {
-                return None;
-            }
-            let s = (b0 - a0).cross(ub).dot(n) / nn;
-            let t = (b0 - a0).cross(ua).dot(n) / nn;
-            let (ts, tt) = (tolerance / ua.length(), tolerance / ub.length());
-            (s >= -ts && s <= 1.0 + ts && t >= -tt && t <= 1.0 + tt).then(|| b0 + ub * t.clamp(0.0, 1.0))
-        }
-    }
-}
-
-/// Whether the foot of `p` on the face's plane lies in the face, or outside by no more than `tolerance` metres.
-fn inside_ring(body: &Polyhedron, face: FaceId, p: DVec3, tolerance: f64) -> bool {
-    body.face_sides(face).iter().all(|side| side.signed_distance(p) <= tolerance)
 }

@@ -1,7 +1,8 @@
 //! The surface contact point: the nearest touching configuration to the hand's at its orientation, one or more obstacles.
 
+use crate::facing::facing_point;
 use crate::projection::{Projection, Row};
-use crate::region::{Placed, facing_point};
+use crate::region::Placed;
 use crate::renderer::SCP_MARGIN;
 use crate::sense::{Sense, Sensed};
 use crate::solid::Solids;
@@ -92,12 +93,12 @@ impl Scp {
     /// The penetration of the hand's pose, metres, `>= 0`: the largest over the planes that count.
     pub fn depth(&mut self, solids: &Solids, pairs: &[Sensed], placed: &Placed) -> f64 {
         self.last = None;
-        self.project(solids, pairs, placed)
+        self.project(solids, pairs, placed, true)
     }
 
     /// Finds the SCP and the planes that hold it, in `touches`; returns the depth as [`Scp::depth`] does.
     pub fn find(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
-        let depth = self.project(solids, pairs, placed);
+        let depth = self.project(solids, pairs, placed, false);
         if depth <= 0.0 {
             self.last = None;
             return depth;
@@ -143,8 +144,9 @@ impl Scp {
         })
     }
 
-    /// Projection on the planes near the hand. Leaves planes in `touches`, multipliers in `projection`.
-    fn project(&mut self, solids: &Solids, pairs: &[Sensed], placed: &Placed) -> f64 {
+    /// Projection on the planes near the hand; returns the depth. Leaves planes in `touches` and, unless the depth alone is
+    /// wanted, multipliers in `projection`.
+    fn project(&mut self, solids: &Solids, pairs: &[Sensed], placed: &Placed, depth_alone: bool) -> f64 {
         self.touches.clear();
         self.rows.clear();
         let deepest = pairs.iter().map(|p| -p.near.distance).fold(0.0, f64::max);
@@ -163,8 +165,15 @@ impl Scp {
                 self.unfelt.push(*s);
             }
         }
+        if self.unfelt.is_empty() && depth_alone {
+            return self.depth_of_touches();
+        }
         self.projection.solve(&self.rows);
         self.add_unfelt(solids, placed);
+        self.depth_of_touches()
+    }
+
+    fn depth_of_touches(&self) -> f64 {
         self.touches.iter().map(|t| -t.plane.distance).fold(0.0, f64::max)
     }
 

@@ -1,6 +1,6 @@
 //! Seams between convex pieces of one body: which contacts are artefacts of the cutting.
 
-use cspace::{EdgeId, FaceId, Polyhedron};
+use cspace::{EdgeId, FaceId, Polyhedron, VertexId};
 use spatial::DVec3;
 use std::sync::Arc;
 
@@ -36,6 +36,12 @@ pub(crate) struct Seams {
     live_edges: Vec<Vec<bool>>,
     /// For each piece, face and side: how much of the side the surface goes on beyond.
     sides: Vec<Vec<Vec<Cover>>>,
+    /// For each piece and vertex the neighbours that the vertex may belong to.
+    at_vertex: Vec<Vec<Vec<u32>>>,
+    /// For each piece and edge the neighbours that some of the edge's points may belong to.
+    at_edge: Vec<Vec<Vec<u32>>>,
+    /// For each piece and face the neighbours that some place just outside of the face may lie in.
+    over_face: Vec<Vec<Vec<u32>>>,
     tolerance: f64,
 }
 
@@ -67,10 +73,51 @@ impl Seams {
                 pieces[a].faces().map(|f| cover_of(&pieces[a], f, others(), tolerance)).collect()
             })
             .collect();
-        let mut seams = Self { pieces, neighbors, cover, live_edges: Vec::new(), sides: Vec::new(), tolerance };
+        let mut seams = Self {
+            pieces,
+            neighbors,
+            cover,
+            live_edges: Vec::new(),
+            sides: Vec::new(),
+            at_vertex: Vec::new(),
+            at_edge: Vec::new(),
+            over_face: Vec::new(),
+            tolerance,
+        };
+        seams.at_vertex = (0..n).map(|a| seams.near_vertices(a)).collect();
+        seams.at_edge = (0..n).map(|a| seams.near_edges(a)).collect();
+        seams.over_face = (0..n).map(|a| seams.near_faces(a)).collect();
         seams.live_edges = (0..n).map(|a| seams.find_live_edges(a)).collect();
         seams.sides = (0..n).map(|a| seams.find_sides(a)).collect();
         seams
+    }
+
+    /// The neighbours of `piece` that a point between these may lie in or near: none of their planes has all points outside
+    /// by more than the tolerance, and as much again for rounding.
+    fn near(&self, piece: usize, points: &[DVec3]) -> Vec<u32> {
+        let outside = |q: &Polyhedron| {
+            let beyond = |f| points.iter().all(|p| q.face_plane(f).signed_distance(*p) > 2.0 * self.tolerance);
+            q.faces().any(beyond)
+        };
+        self.neighbors[piece].iter().copied().filter(|&other| !outside(&self.pieces[other as usize])).collect()
+    }
+
+    fn near_vertices(&self, piece: usize) -> Vec<Vec<u32>> {
+        self.pieces[piece].vertices().iter().map(|v| self.near(piece, &[*v])).collect()
+    }
+
+    fn near_edges(&self, piece: usize) -> Vec<Vec<u32>> {
+        let p = &self.pieces[piece];
+        p.edges().map(|e| self.near(piece, &p.edge(e).vertices.map(|v| p.vertex(v)))).collect()
+    }
+
+    fn near_faces(&self, piece: usize) -> Vec<Vec<u32>> {
+        let p = &self.pieces[piece];
+        let lifted = |f| {
+            let up = p.face_plane(f).normal * (4.0 * self.tolerance);
+            p.face_vertices(f).iter().map(|v| p.vertex(*v) + up).collect::<Vec<_>>()
+        };
+        p.faces().map(|f| self.near(piece, &lifted(f))).collect()
     }
 
     fn find_live_edges(&self, piece: usize) -> Vec<bool> {
@@ -80,7 +127,7 @@ impl Seams {
                 let edge = p.edge(e);
                 let [a, b] = edge.vertices.map(|v| p.vertex(v));
                 let [f, g] = edge.faces.map(|f| p.face_plane(f).normal);
-                SAMPLES.iter().any(|s| self.is_felt(piece, a.lerp(b, *s), (f + g).normalize_or_zero()))
+                SAMPLES.iter().any(|s| self.is_felt_on_edge(piece, e, a.lerp(b, *s), (f + g).normalize_or_zero()))
             })
             .collect()
     }
@@ -113,7 +160,9 @@ impl Seams {
     /// Whether the place just outside of the face at `point` (a point of the face) lies inside another piece.
     pub fn is_covered(&self, piece: usize, face: FaceId, point: DVec3) -> bool {
         let outside = point + self.pieces[piece].face_plane(face).normal * (4.0 * self.tolerance);
-        self.neighbors[piece].iter().any(|&other| self.pieces[other as usize].contains(outside, -self.tolerance))
+        self.over_face[piece][face.index()]
+            .iter()
+            .any(|&other| self.pieces[other as usize].contains(outside, -self.tolerance))
     }
 
     /// Whether the piece borders on others at all: if not, all its contacts are felt.
@@ -144,7 +193,22 @@ impl Seams {
     /// Whether a contact at `point` on the surface of `piece`, with the outward `normal`, both in the pieces' frame, is one
     /// of the uncut solid: the contact plane must support every piece that the point belongs to.
     pub fn is_felt(&self, piece: usize, point: DVec3, normal: DVec3) -> bool {
-        self.neighbors[piece].iter().all(|&other| {
+        self.is_felt_among(&self.neighbors[piece], point, normal)
+    }
+
+    /// The same of a contact at a vertex.
+    pub fn is_felt_at_vertex(&self, piece: usize, vertex: VertexId, normal: DVec3) -> bool {
+        let point = self.pieces[piece].vertex(vertex);
+        self.is_felt_among(&self.at_vertex[piece][vertex.index()], point, normal)
+    }
+
+    /// The same of a contact at `point` on an edge, between its ends.
+    pub fn is_felt_on_edge(&self, piece: usize, edge: EdgeId, point: DVec3, normal: DVec3) -> bool {
+        self.is_felt_among(&self.at_edge[piece][edge.index()], point, normal)
+    }
+
+    fn is_felt_among(&self, others: &[u32], point: DVec3, normal: DVec3) -> bool {
+        others.iter().all(|&other| {
             let q = &self.pieces[other as usize];
             if !q.contains(point, self.tolerance) {
                 return true;

@@ -70,10 +70,10 @@ impl Solids {
                 };
                 face_felt
                     && (self.moving.is_alone(part) || {
-                        self.moving.is_felt(part, a.vertex(vertex_a), -(into_a * c.normal_w))
+                        self.moving.is_felt_at_vertex(part, vertex_a, -(into_a * c.normal_w))
                     })
             }
-            BasicContact::TypeA { face_a, .. } => {
+            BasicContact::TypeA { face_a, vertex_b } => {
                 let face_felt = match self.moving.cover(part, face_a) {
                     Cover::Open => true,
                     Cover::Internal => false,
@@ -81,10 +81,10 @@ impl Solids {
                         .iter()
                         .any(|p| !self.moving.is_covered(part, face_a, nearest_in_face(a, face_a, seen_from_a(*p)))),
                 };
-                face_felt && (self.fixed.is_alone(piece) || self.fixed.is_felt(piece, at, c.normal_w))
+                face_felt && (self.fixed.is_alone(piece) || self.fixed.is_felt_at_vertex(piece, vertex_b, c.normal_w))
             }
-            BasicContact::TypeC { .. } => {
-                (self.fixed.is_alone(piece) || self.fixed.is_felt(piece, at, c.normal_w))
+            BasicContact::TypeC { edge_b, .. } => {
+                (self.fixed.is_alone(piece) || self.fixed.is_felt_on_edge(piece, edge_b, at, c.normal_w))
                     && (self.moving.is_alone(part) || {
                         let on_a = seen_from_a(at + c.normal_w * c.distance);
                         self.moving.is_felt(part, on_a, -(into_a * c.normal_w))
@@ -204,16 +204,20 @@ impl Solids {
     }
 }
 
-/// Whether the plane of two edges can have a signed distance larger than `known`, metres, as far as the squares of both
-/// tell, which need no root. Parallel edges have none.
+/// Whether the plane of two edges can take place, as far as B's edge tells, with a signed distance larger than `known`,
+/// metres, as far as the squares of both tell, which need no root.
 #[inline]
 fn may_better(along_a: DVec3, on_a: DVec3, b: &Polyhedron, edge_b: EdgeId, known: f64) -> bool {
     let Edge { vertices: [at_b, _], faces: [f, g] } = b.edge(edge_b);
-    let across = along_a.cross(b.edge_direction(edge_b));
-    let outward = across.dot(b.face_plane(f).normal + b.face_plane(g).normal);
-    let over = across.dot(on_a - b.vertex(at_b));
-    let over = if outward < 0.0 { -over } else { over };
-    over * over.abs() > known * known.abs() * across.length_squared()
+    let (n, m) = (b.face_plane(f).normal, b.face_plane(g).normal);
+    let (p, q) = (n.dot(along_a), m.dot(along_a));
+    if !(p * q < 0.0) {
+        return false;
+    }
+    // Along the edge's arc on the Gauss sphere, where it crosses the circle of A's edge.
+    let outward = n * q.abs() + m * p.abs();
+    let over = outward.dot(on_a - b.vertex(at_b));
+    over * over.abs() > known * known.abs() * outward.length_squared()
 }
 
 /// The plane of a face of A against the vertex of B that it meets first: type A.

@@ -62,10 +62,17 @@ impl Pose {
         if q.w < 0.0 {
             q = -q;
         }
-        // atan2 form: exact for small angles, where acos loses half the digits.
         let s = DVec3::new(q.x, q.y, q.z);
+        let w = q.w.max(1e-150);
+        let square = s.length_squared() / (w * w);
+        if square < 1e-3 {
+            // atan(t) / t in powers of t^2: what is left out is less than rounding.
+            let series = 1.0 - square * (1.0 / 3.0 - square * (1.0 / 5.0 - square * (1.0 / 7.0 - square / 9.0)));
+            return s * (2.0 / w * series);
+        }
+        // atan2 form: exact for small angles, where acos loses half the digits.
         let sin_half = s.length();
-        if sin_half < 1e-12 { s * 2.0 } else { s * (2.0 * sin_half.atan2(q.w) / sin_half) }
+        s * (2.0 * sin_half.atan2(q.w) / sin_half)
     }
 
     /// `self` moved by `dp` (metres) and turned by the rotation vector `dtheta` (radians), both along outer axes.
