@@ -33,7 +33,7 @@ pub use formation::{ContactFormation, ContactPoint, FormationKind, MAX_CONTACTS}
 pub use friction::Coefficients;
 pub use gains::{Gains, LawKind};
 pub use law::{LawOutput, RenderLaw};
-pub use limiter::{Limited, Limiter};
+pub use limiter::{Limited, Limiter, clamped};
 pub use passivity::{Displacement, Held, Passivity, PassivityLimits, returnable_energy};
 pub use renderer::Renderer;
 pub use sampled_loop::{HoldDamping, SampledLoop};

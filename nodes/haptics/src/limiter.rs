@@ -20,14 +20,13 @@ pub struct Limiter {
 impl Limiter {
     /// One tick of `dt` seconds. What is asked must be finite.
     pub fn step(&mut self, asked: &Wrench, gains: &Gains, dt: f64) -> Limited {
-        let (force, f) = clamped(asked.force, gains.max_force);
-        let (torque, t) = clamped(asked.torque, gains.max_torque);
-        self.last.force += clamped(force - self.last.force, gains.max_force_rate * dt).0;
-        self.last.torque += clamped(torque - self.last.torque, gains.max_torque_rate * dt).0;
+        let goal = clamped(asked, gains);
+        let saturated = asked.force.length() > gains.max_force || asked.torque.length() > gains.max_torque;
+        self.last.force += shortened(goal.force - self.last.force, gains.max_force_rate * dt);
+        self.last.torque += shortened(goal.torque - self.last.torque, gains.max_torque_rate * dt);
         // When a limit was lowered, the way down is not slowed by the rate.
-        self.last.force = clamped(self.last.force, gains.max_force).0;
-        self.last.torque = clamped(self.last.torque, gains.max_torque).0;
-        Limited { wrench: self.last, saturated: f < 1.0 || t < 1.0 }
+        self.last = clamped(&self.last, gains);
+        Limited { wrench: self.last, saturated }
     }
 
     /// No force at once: safety does not wait for the rate.
@@ -36,10 +35,15 @@ impl Limiter {
     }
 }
 
-/// `v` shortened to at most `max`, and by what factor.
-fn clamped(v: DVec3, max: f64) -> (DVec3, f64) {
-    let factor = limit_factor(v.length(), max);
-    (v * factor, factor)
+/// The wrench with force and torque shortened to the greatest that the gains allow.
+#[must_use]
+pub fn clamped(wrench: &Wrench, gains: &Gains) -> Wrench {
+    Wrench::new(shortened(wrench.force, gains.max_force), shortened(wrench.torque, gains.max_torque))
+}
+
+/// `v` shortened to at most `max`.
+fn shortened(v: DVec3, max: f64) -> DVec3 {
+    v * limit_factor(v.length(), max)
 }
 
 /// The factor, 1 or less, that brings `length` down to `max`.

@@ -7,6 +7,10 @@ const SURPLUS: f64 = 1e-6;
 /// The most that the account of the remote side may hold, J: what the hand stored there may come back.
 const REMOTE_SURPLUS: f64 = 1.0;
 
+/// How much more than `k (T/2 + t_d)`, which a slow motion asks, the controller damps: the damping comes a half period later
+/// than the spring, so that at the loop's own frequency a part of it acts as a spring.
+pub(crate) const HOLD_MARGIN: f64 = 1.2;
+
 /// Wrenches that may be on their way to the hand: a longer delay than so many ticks, less two, is booked as this one.
 const ON_THE_WAY: usize = 16;
 
@@ -21,6 +25,10 @@ pub struct PassivityLimits {
     pub budget: f64,
     /// Delay between measuring and showing beyond the hold of a tick, s.
     pub delay: f64,
+    /// Mass of device and hand, kg: how far a force moves them within a tick.
+    pub mass: f64,
+    /// Moment of inertia of device and hand, kg.m^2.
+    pub inertia: f64,
 }
 
 /// Motion of the hand during one tick: metres and rotation vector, axes of W.
@@ -48,8 +56,9 @@ pub struct Held {
 ///
 /// The account of the contact is what the hand has put in, less what the coupling still holds: it must not fall below
 /// zero. That is sharper than asking only that no net energy comes out, and makes the loss of a sampled spring, `k/2` of
-/// each step squared, visible at once: the controller adds `k (T/2 + t_d)` of damping, the bound of Colgate and Schenkel
-/// (1997) with the delay. A change of the stored energy that no motion made (re-seeding, other gains) stands in the account as
+/// each step squared, visible at once: the controller adds `k (T/2 + t_d)` of damping and a fifth more, the bound of Colgate
+/// and Schenkel (1997) with the delay. Where that comes too late, as in a wall that is only a tick or two thick for a fast hand, no
+/// more is shown than what the hand has put in pays for ([`Passivity::affordable`]). A change of the stored energy that no motion made (re-seeding, other gains) stands in the account as
 /// `k/2 (f_old^2 - f_new^2)`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Passivity {
@@ -116,9 +125,38 @@ impl Passivity {
             let paying = if in_contact { paying.min(held) } else { paying };
             (held + paying).min(limits.max_damping)
         };
+        let late = HOLD_MARGIN * late;
         let rotation_damping = damping(rotation_stiffness * late / lever2) * lever2;
         let damping = damping(stiffness * late);
         Wrench::new(v * -damping, w * -rotation_damping)
+    }
+
+    /// The share, 0 to 1, of the local `wrench` that may be shown over a tick of `dt` seconds, in which the hand would move by
+    /// `moving` at its present rate: what the wrench would do to a hand that is on its way out must have been put in before.
+    /// 1 for a hand on its way in, and where there is enough.
+    #[must_use]
+    pub fn affordable(&self, wrench: &Wrench, moving: &Displacement, dt: f64, limits: &PassivityLimits) -> f64 {
+        let flow = work(wrench, moving);
+        if flow <= 0.0 {
+            return 1.0;
+        }
+        // What is on its way to the hand is spent first.
+        let ticks = (limits.delay / dt).clamp(0.0, (ON_THE_WAY - 2) as f64);
+        let whole = ticks as usize;
+        let mut coming = work(&self.shown[whole].0, moving) * ticks.fract();
+        for (local, _) in &self.shown[..whole] {
+            coming += work(local, moving);
+        }
+        let have = (self.stored + self.account - coming.max(0.0)).max(0.0);
+        // The wrench speeds the hand up meanwhile; not so while it only turns round.
+        let push = wrench.force.length_squared() / limits.mass + wrench.torque.length_squared() / limits.inertia;
+        let push = push * dt * (dt + limits.delay);
+        let push = push * flow / (flow + push);
+        if flow + push <= have {
+            return 1.0;
+        }
+        // share flow + share^2 push = have
+        2.0 * have / (flow + (flow * flow + 4.0 * push * have).sqrt())
     }
 
     /// Takes note of what is shown during the coming tick: the contact's part and the remote side's.
@@ -160,7 +198,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const LIMITS: PassivityLimits = PassivityLimits { max_damping: 50.0, lever: 0.03, budget: 1e-2, delay: 0.0 };
+    const LIMITS: PassivityLimits =
+        PassivityLimits { max_damping: 50.0, lever: 0.03, budget: 1e-2, delay: 0.0, mass: 0.1, inertia: 1e-4 };
     const K: f64 = 1000.0;
     const DT: f64 = 1e-3;
 
@@ -235,6 +274,23 @@ mod tests {
         }
         // Shown at the first tick: half of it is felt in the third.
         assert_eq!(owed, [0, 0, 500, 1500]);
+    }
+
+    #[test]
+    fn no_more_is_shown_than_was_put_in() {
+        let mut p = Passivity::default();
+        // 0.1 mm into the wall against 0.03 N: less than the 5e-6 J that the spring then holds.
+        let into = Displacement { linear: DVec3::NEG_Z * 1e-4, angular: DVec3::ZERO };
+        p.shown(Wrench::new(DVec3::Z * 0.03, DVec3::ZERO), Wrench::ZERO);
+        p.observe(&into, &held(0.5 * K * 1e-8), DT, &LIMITS);
+        let spring = Wrench::new(DVec3::Z * (K * 1e-4), DVec3::ZERO);
+        assert_eq!(p.affordable(&spring, &into, DT, &LIMITS), 1.0, "on the way in");
+        let out = Displacement { linear: DVec3::Z * 2e-4, angular: DVec3::ZERO };
+        let share = p.affordable(&spring, &out, DT, &LIMITS);
+        let given = share * (work(&spring, &out) + share * (K * 1e-4).powi(2) / LIMITS.mass * DT * DT);
+        assert!(given > 0.99 * 3e-6 && given < 1.01 * 3e-6, "{share}: {given} J of 3e-6");
+        let slow = Displacement { linear: DVec3::Z * 1e-6, angular: DVec3::ZERO };
+        assert_eq!(p.affordable(&spring, &slow, DT, &LIMITS), 1.0, "there is enough");
     }
 
     #[test]

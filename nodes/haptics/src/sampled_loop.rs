@@ -1,4 +1,5 @@
 use crate::low_pass_share;
+use crate::passivity::HOLD_MARGIN;
 use nalgebra::{Complex, Matrix2, Matrix3, RowVector2, Vector2};
 use std::f64::consts::PI;
 
@@ -6,6 +7,10 @@ use std::f64::consts::PI;
 const GRID: usize = 4000;
 /// The lowest one, as a share of half the sampling rate.
 const LOWEST: f64 = 1e-4;
+
+/// What part of the largest stable stiffness still gives the hand no energy under the controller: nearer to the limit the
+/// contact rings, and the damping of the hand pays for it.
+const GAIN_MARGIN: f64 = 0.6;
 
 /// A sampled and held spring and damper against the mass that holds it, in one degree of freedom: translation (kg, N.s/m,
 /// N/m) or rotation (kg.m^2, N.m.s/rad, N.m/rad).
@@ -29,7 +34,8 @@ pub struct SampledLoop {
     pub cutoff: f64,
 }
 
-/// The passivity controller as the loop sees it: damping `K (T/2 + t_d)` of the motion between two samples, up to a limit.
+/// The passivity controller as the loop sees it: damping `K (T/2 + t_d)`, and a fifth more, of the motion between two samples, up
+/// to a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HoldDamping {
     /// The limit, in the unit of damping.
@@ -49,13 +55,21 @@ impl SampledLoop {
         let Some(HoldDamping { max }) = controller else {
             return self.first_crossing(virtual_damping, unity, 0.0);
         };
-        let late = 0.5 * self.period + self.delay;
+        let late = HOLD_MARGIN * (0.5 * self.period + self.delay);
         let following = self.first_crossing(virtual_damping, |z| Complex::from(1.0) + self.rate(z) * late, 0.0);
         let full = max / late;
         if following <= full {
             return following;
         }
         self.first_crossing(|z| virtual_damping(z) + self.rate(z) * max, unity, full)
+    }
+
+    /// The largest stiffness up to which the controller keeps the hand from being given energy: its damping is not cut off, and
+    /// the loop is well within stability.
+    #[must_use]
+    pub fn largest_passive_stiffness(&self, damping: f64, controller: HoldDamping) -> f64 {
+        let uncut = controller.max / (HOLD_MARGIN * (0.5 * self.period + self.delay));
+        uncut.min(GAIN_MARGIN * self.largest_stiffness(damping, Some(controller)))
     }
 
     /// The largest virtual damping at which the loop comes to rest without any spring.
@@ -167,7 +181,7 @@ mod tests {
         let (step, push) = motion(l, l.period / FINE as f64);
         let mut state = Vector2::new(1e-3, 0.0);
         let (mut last, mut filtered, mut wrenches) = (1e-3, 0.0, vec![0.0; late]);
-        let added = controller.map_or(0.0, |c| c.max.min(stiffness * (0.5 * l.period + l.delay)));
+        let added = controller.map_or(0.0, |c| c.max.min(HOLD_MARGIN * stiffness * (0.5 * l.period + l.delay)));
         let periods = (2.0 / l.period) as usize;
         // Of the second and the last fifth.
         let mut swing = [0.0f64; 5];

@@ -1,7 +1,8 @@
 use crate::stretching::Stretching;
 use crate::{Config, Health};
 use haptics::{
-    Coupling, Displacement, Gains, Held, LawKind, LawOutput, Limiter, Passivity, PassivityLimits, returnable_energy,
+    Coupling, Displacement, Gains, Held, LawKind, LawOutput, Limiter, Passivity, PassivityLimits, clamped,
+    returnable_energy,
 };
 use spatial::{Pose, Twist, Wrench};
 
@@ -66,6 +67,8 @@ impl Output {
                 lever: passivity.lever,
                 budget: passivity.budget,
                 delay: config.stability.delay,
+                mass: config.stability.mass,
+                inertia: config.stability.inertia,
             },
             limiter: Limiter::default(),
             ramp: 0.0,
@@ -93,7 +96,8 @@ impl Output {
         self.advance_ramp(r, gains, dt);
         let control = self.control(r, gains, dt, health);
         let remote = *r.remote * self.share;
-        let asked = (r.law.wrench + damping) * self.share + remote + control;
+        let local = self.paid_for((r.law.wrench + damping) * self.share + control, r, gains, dt);
+        let asked = local + remote;
         if !asked.is_finite() {
             health.set(Health::FAULT);
             self.cut();
@@ -149,6 +153,16 @@ impl Output {
             return Wrench::ZERO;
         }
         self.passivity.control(&self.stretching.part_of(r.moving), stiffness, dt, &limits)
+    }
+
+    /// As much of the local wrench as what the hand has put in pays for, seen as the limiter will show it.
+    fn paid_for(&self, local: Wrench, r: &Rendered<'_>, gains: &Gains, dt: f64) -> Wrench {
+        if !gains.passivity || r.clutched {
+            return local;
+        }
+        let shown = clamped(&local, gains);
+        let share = self.passivity.affordable(&shown, r.moving, dt, &self.passivity_limits);
+        if share < 1.0 { shown * share } else { local }
     }
 
     /// No force at once, and from zero again afterwards.

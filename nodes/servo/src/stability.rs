@@ -26,6 +26,15 @@ pub enum StabilityFinding {
         /// The largest that comes to rest.
         largest: f64,
     },
+    /// The loop comes to rest, but so near to its limit the passivity controller cannot keep the hand from being given energy.
+    Lively {
+        /// Which motion.
+        motion: MotionKind,
+        /// Stiffness, N/m or N.m/rad.
+        stiffness: f64,
+        /// The largest at which the hand is given none.
+        largest: f64,
+    },
     /// The sampled wall is active: `b < K (T/2 + t_d) + B` (Colgate and Schenkel 1997; a delay counts like half a period).
     Active {
         /// Which motion.
@@ -83,6 +92,14 @@ impl fmt::Display for StabilityFinding {
                     f,
                     "{name} = {damping} {unit}.s: damping that comes so late will run away by itself; {largest:.3} {unit}.s \
                      is the largest that comes to rest"
+                )
+            }
+            Self::Lively { motion, stiffness, largest } => {
+                let (name, _, unit) = motion.names();
+                write!(
+                    f,
+                    "{name} = {stiffness} {unit}: the contact may hum and give energy to the hand; at this rate, delay and mass \
+                     {largest:.3} {unit} is the largest that the passivity controller makes up for"
                 )
             }
             Self::Active { motion, stiffness, bearable, controlled } => {
@@ -155,6 +172,13 @@ impl RenderedMotion {
         self.sampled.largest_stiffness(self.damping, self.controller)
     }
 
+    /// The largest stiffness at the hand up to which the passivity controller keeps the hand from being given energy; without one
+    /// there is none.
+    #[must_use]
+    pub fn largest_passive_stiffness(&self) -> Option<f64> {
+        self.controller.map(|c| self.sampled.largest_passive_stiffness(self.damping, c))
+    }
+
     fn findings(&self, motion: MotionKind) -> impl Iterator<Item = StabilityFinding> {
         let (stiffness, damping) = (self.stiffness / self.scale, self.damping / self.scale);
         let largest = self.sampled.largest_damping() / self.scale;
@@ -165,13 +189,21 @@ impl RenderedMotion {
             stiffness,
             largest,
         });
+        let passive = self.largest_passive_stiffness().map(|k| k / self.scale);
+        let lively = passive
+            .filter(|k| stiffness >= *k && runs_away.is_none() && unstable.is_none())
+            .map(|largest| StabilityFinding::Lively { motion, stiffness, largest });
         // Virtual damping counts against it, as Colgate and Schenkel have it: it comes late like the stiffness.
         let hold = 0.5 * self.sampled.period + self.sampled.delay;
         let bearable = (self.sampled.damping - self.damping).max(0.0) / (hold * self.scale);
         let controlled = self.controller.is_some();
-        let active =
-            (stiffness > bearable).then_some(StabilityFinding::Active { motion, stiffness, bearable, controlled });
-        [runs_away, unstable, active].into_iter().flatten()
+        let active = (stiffness > bearable && lively.is_none()).then_some(StabilityFinding::Active {
+            motion,
+            stiffness,
+            bearable,
+            controlled,
+        });
+        [runs_away, unstable, lively, active].into_iter().flatten()
     }
 }
 

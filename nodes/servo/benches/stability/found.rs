@@ -15,6 +15,8 @@ pub(crate) struct Found {
     pub predicted: f64,
     /// Largest stiffness up to which neither pressing nor tapping ever gives the hand more than `NO_ENERGY`.
     pub passive: f64,
+    /// The same by the start-up check; only with the controller.
+    pub passive_predicted: f64,
     /// The most energy that the hand was ever given at stiffnesses that come to rest, J.
     pub energy: f64,
     /// Torque at rest under the default gains, from peak to peak, N.m, and whether it rests.
@@ -34,6 +36,7 @@ impl Found {
             largest,
             predicted: cell.predicted(passivity),
             passive: if rocking { f64::NAN } else { cell.passive(world, passivity) },
+            passive_predicted: if passivity { cell.predicted_passive() } else { f64::NAN },
             energy,
             torque: one.torque,
             rests: one.stable,

@@ -54,6 +54,12 @@ impl Cell {
         RenderedMotion::new(&self.rig().config(&self.gains(1.0, passivity)), self.motion).largest_stiffness()
     }
 
+    /// Up to which stiffness the check at start says that the hand is given nothing, with passivity control.
+    pub fn predicted_passive(&self) -> f64 {
+        let motion = RenderedMotion::new(&self.rig().config(&self.gains(1.0, true)), self.motion);
+        motion.largest_passive_stiffness().unwrap_or(0.0)
+    }
+
     /// The largest stiffness that comes to rest, and the most energy given on the way there.
     pub fn largest(&self, world: &Arc<World>, passivity: bool) -> (f64, f64) {
         let (rig, freedom) = (self.rig(), self.freedom());
