@@ -29,6 +29,8 @@ pub(crate) struct DepthResult {
 pub(crate) struct DepthLaw {
     scp: Scp,
     points: Vec<RegionPoint>,
+    /// Contacts of other pairs that belong to the region in hand.
+    beside: Vec<RegionPoint>,
     places: Vec<DVec3>,
     weights: Vec<f64>,
     shares: Shares,
@@ -46,6 +48,7 @@ impl DepthLaw {
         Self {
             scp: Scp::new(solids),
             points: Vec::with_capacity(ROOM),
+            beside: Vec::with_capacity(ROOM),
             places: Vec::with_capacity(ROOM),
             weights: Vec::with_capacity(ROOM),
             shares: Shares::new(ROOM),
@@ -87,6 +90,7 @@ impl DepthLaw {
         for i in 0..self.scp.touches.len() {
             let t = self.scp.touches[i];
             if t.push > 0.0 {
+                self.widen(solids, pairs, &placed, law, gains, &t);
                 result.wrench.torque += self.torque_of(i, t, x0, law, gains);
             }
         }
@@ -151,6 +155,24 @@ impl DepthLaw {
         }
     }
 
+    /// Adds, behind all others, what of the region of `t` belongs to other pairs: pieces that go on flush with it. The depths there
+    /// may be small, or gaps, where the pair has no contact of its own.
+    fn widen(&mut self, solids: &Solids, pairs: &[Sensed], placed: &Placed, law: LawKind, gains: &Gains, t: &Touch) {
+        self.beside.clear();
+        if law != LawKind::Blended || pairs.len() < 2 {
+            return;
+        }
+        let scope = Scope { reach: f64::INFINITY, near_felt: false, wide: true, along_near: true };
+        let of_pair = (t.part as usize, t.piece as usize);
+        self.clipper.beside(solids, pairs, of_pair, placed, &t.plane, &scope, 0, &mut self.beside);
+        let limit = t.plane.distance + gains.blend_depth.max(t.tie);
+        let normal = t.plane.normal_w;
+        self.beside.retain_mut(|p| {
+            p.gap = normal.dot(p.span_w);
+            p.gap <= limit
+        });
+    }
+
     /// The torque of the force share that plane `i` carries, over the contacts of all pairs with an equal plane.
     fn torque_of(&mut self, i: usize, t: Touch, x0: DVec3, law: LawKind, gains: &Gains) -> DVec3 {
         let normal = t.plane.normal_w;
@@ -165,7 +187,8 @@ impl DepthLaw {
             if !equal {
                 continue;
             }
-            for p in &self.points[u.first..u.end] {
+            let beside: &[RegionPoint] = if i == j { &self.beside } else { &[] };
+            for p in self.points[u.first..u.end].iter().chain(beside) {
                 if self.places.len() == ROOM {
                     break;
                 }

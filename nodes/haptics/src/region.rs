@@ -1,6 +1,7 @@
 //! The contact region of a pair: the two faces in contact, clipped against each other, as basic contacts.
 
 use crate::facing::facing_point;
+use crate::sense::Sensed;
 use crate::solid::Solids;
 use cspace::{BasicContact, CFace, EdgeId, FaceId, Polyhedron, World};
 use spatial::{DMat3, DVec3, Pose};
@@ -159,6 +160,37 @@ impl Clipper {
         }
     }
 
+    /// Appends the contacts of the region of `near` that belong to other pairs: where the faces that [`Clipper::region`] finds (with
+    /// a wide scope) go on in other pieces of their bodies, as one plane. Only the pairs in `others` are looked at.
+    #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
+    pub fn beside(
+        &mut self,
+        solids: &Solids,
+        others: &[Sensed],
+        (part, piece): (usize, usize),
+        placed: &Placed,
+        near: &CFace,
+        scope: &Scope,
+        first: usize,
+        out: &mut Vec<RegionPoint>,
+    ) {
+        self.pairs.clear();
+        facing_pairs(solids, part, piece, &placed.r, near, &mut self.pairs);
+        for s in others {
+            let (other_a, other_b) = (s.part as usize, s.piece as usize);
+            if (other_a, other_b) == (part, piece) {
+                continue;
+            }
+            for k in 0..self.pairs.len() {
+                let (face_a, face_b) = self.pairs[k];
+                let faces = solids.flush_a(part, face_a, other_a).zip(solids.flush_b(piece, face_b, other_b));
+                if let Some(faces) = faces {
+                    self.faces(solids, other_a, other_b, placed, near, false, faces, scope, first, out);
+                }
+            }
+        }
+    }
+
     /// Appends the contacts between one face of each body.
     #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
     fn faces(
@@ -189,6 +221,14 @@ impl Clipper {
             let mut last = self.subject.last().map_or(Side::A(0), |c| c.leaving);
             for &Corner { point, leaving } in &self.subject {
                 let before = std::mem::replace(&mut last, leaving);
+                // Weighted by their depths, the ends of a cut in A's face would count as contacts.
+                let cut = |s: &Side| match s {
+                    Side::A(i) => solids.goes_on_a(part, face_a, *i as usize, point, placed),
+                    Side::B(_) => false,
+                };
+                if scope.wide && (cut(&before) || cut(&leaving)) {
+                    continue;
+                }
                 let height = plane_b.signed_distance(point);
                 if height * lean > scope.reach && height > scope.reach {
                     continue;

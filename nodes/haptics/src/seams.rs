@@ -42,6 +42,8 @@ pub(crate) struct Seams {
     at_edge: Vec<Vec<Vec<u32>>>,
     /// For each piece and face the neighbours that some place just outside of the face may lie in.
     over_face: Vec<Vec<Vec<u32>>>,
+    /// For each piece and face the faces of other pieces that lie in its plane and look the same way.
+    flush: Vec<Vec<Vec<(u32, FaceId)>>>,
     tolerance: f64,
 }
 
@@ -67,12 +69,13 @@ impl Seams {
         let neighbors: Vec<Vec<u32>> = (0..n)
             .map(|a| (0..n).filter(|&b| b != a && touching(&pieces[a], &pieces[b])).map(|b| b as u32).collect())
             .collect();
-        let cover = (0..n)
+        let cover: Vec<Vec<Cover>> = (0..n)
             .map(|a| {
                 let others = || neighbors[a].iter().map(|&b| &*pieces[b as usize]);
                 pieces[a].faces().map(|f| cover_of(&pieces[a], f, others(), tolerance)).collect()
             })
             .collect();
+        let flush = flush_faces(&pieces, &cover, tolerance);
         let mut seams = Self {
             pieces,
             neighbors,
@@ -82,6 +85,7 @@ impl Seams {
             at_vertex: Vec::new(),
             at_edge: Vec::new(),
             over_face: Vec::new(),
+            flush,
             tolerance,
         };
         seams.at_vertex = (0..n).map(|a| seams.near_vertices(a)).collect();
@@ -170,6 +174,11 @@ impl Seams {
         self.neighbors[piece].is_empty()
     }
 
+    /// The faces of other pieces in the plane of this one: together they are one face of the solid, or of several.
+    pub fn flush(&self, piece: usize, face: FaceId) -> &[(u32, FaceId)] {
+        &self.flush[piece][face.index()]
+    }
+
     /// Whether the face's surface goes on in another piece beyond its side `side` at `point` (a point of that side), flat or
     /// rising: then the side is no border of the solid.
     pub fn goes_on(&self, piece: usize, face: FaceId, side: usize, point: DVec3) -> bool {
@@ -217,6 +226,29 @@ impl Seams {
             normal.dot(top - point) <= FLAT * 2.0 * q.size() + self.tolerance
         })
     }
+}
+
+/// For each piece and face the faces of the solids' surface, of other pieces, that are one plane with it.
+fn flush_faces(pieces: &[Arc<Polyhedron>], cover: &[Vec<Cover>], tolerance: f64) -> Vec<Vec<Vec<(u32, FaceId)>>> {
+    let open = |a: usize| pieces[a].faces().filter(move |f| cover[a][f.index()] != Cover::Internal);
+    let mut flush: Vec<Vec<Vec<(u32, FaceId)>>> =
+        pieces.iter().map(|p| p.faces().map(|_| Vec::new()).collect()).collect();
+    for (a, p) in pieces.iter().enumerate() {
+        for (b, q) in pieces.iter().enumerate().skip(a + 1) {
+            for f in open(a) {
+                let plane = p.face_plane(f);
+                for g in open(b) {
+                    let in_plane = |v| plane.signed_distance(q.vertex(v)).abs() <= 2.0 * tolerance;
+                    if plane.normal.dot(q.face_plane(g).normal) > 0.5 && q.face_vertices(g).iter().all(|v| in_plane(*v))
+                    {
+                        flush[a][f.index()].push((b as u32, g));
+                        flush[b][g.index()].push((a as u32, f));
+                    }
+                }
+            }
+        }
+    }
+    flush
 }
 
 /// What is left of the face when every other piece has been cut out of it, a little outside of the face, by area.
@@ -312,6 +344,22 @@ mod tests {
         let covers: Vec<Cover> = (0..6).map(|f| s.cover(0, FaceId(f))).collect();
         assert_eq!(covers.iter().filter(|c| **c == Cover::Internal).count(), 1, "{covers:?}");
         assert_eq!(covers.iter().filter(|c| **c == Cover::Open).count(), 5, "{covers:?}");
+    }
+
+    #[test]
+    fn tops_of_one_height_are_flush_and_joints_are_not() {
+        let s = Seams::new(vec![
+            Arc::new(cuboid(DVec3::new(-1.0, -1.0, -1.0), DVec3::new(0.0, 1.0, 0.0))),
+            Arc::new(cuboid(DVec3::new(0.0, -0.5, -2.0), DVec3::new(1.0, 0.5, 0.0))),
+            Arc::new(cuboid(DVec3::new(3.0, -0.5, -2.0), DVec3::new(4.0, 0.5, -1e-3))),
+        ]);
+        for f in s.pieces[0].faces() {
+            let normal = s.pieces[0].face_plane(f).normal;
+            match s.flush(0, f) {
+                [(1, g)] => assert!(normal == DVec3::Z && s.pieces[1].face_plane(*g).normal == DVec3::Z),
+                others => assert!(normal != DVec3::Z && others.is_empty(), "{normal}: {others:?}"),
+            }
+        }
     }
 
     #[test]

@@ -51,6 +51,21 @@ impl Solids {
         !self.fixed.is_alone(piece) && self.fixed.goes_on(piece, face, side, point_w)
     }
 
+    /// The same of a part of A.
+    pub fn goes_on_a(&self, part: usize, face: FaceId, side: usize, point_w: DVec3, placed: &Placed) -> bool {
+        !self.moving.is_alone(part) && self.moving.goes_on(part, face, side, placed.into_a(point_w))
+    }
+
+    /// The face of part `other` that is one plane with this one of `part`, which may be `other` itself.
+    pub fn flush_a(&self, part: usize, face: FaceId, other: usize) -> Option<FaceId> {
+        flush(&self.moving, part, face, other)
+    }
+
+    /// The same of a piece.
+    pub fn flush_b(&self, piece: usize, face: FaceId, other: usize) -> Option<FaceId> {
+        flush(&self.fixed, piece, face, other)
+    }
+
     /// Whether the contact is one of the uncut solids. Vertices and edges are judged where they are; a face that is
     /// covered in part is felt while A's contact or A's middle stands over the open part. (The contact alone does not
     /// decide: deep in a corner it lies inside the other wall, and still this wall must push.)
@@ -218,6 +233,13 @@ fn may_better(along_a: DVec3, on_a: DVec3, b: &Polyhedron, edge_b: EdgeId, known
     let outward = n * q.abs() + m * p.abs();
     let over = outward.dot(on_a - b.vertex(at_b));
     over * over.abs() > known * known.abs() * outward.length_squared()
+}
+
+fn flush(seams: &Seams, piece: usize, face: FaceId, other: usize) -> Option<FaceId> {
+    if piece == other {
+        return Some(face);
+    }
+    seams.flush(piece, face).iter().find(|(p, _)| *p as usize == other).map(|(_, f)| *f)
 }
 
 /// The plane of a face of A against the vertex of B that it meets first: type A.
