@@ -141,20 +141,50 @@ pub fn motion(
     out
 }
 
-/// Poses of a hand sliding over an obstacle at a constant signed distance `gap` (`< 0`: depth), 0.1 % of the size a
-/// sample.
+/// Poses of A sliding over an obstacle at a constant signed distance `gap` (`< 0`: depth): each sample 0.1 % of the
+/// distance of the centres farther, and turned by a milliradian about an axis drawn anew. At 1 kHz and with parts of
+/// 100 mm that is 0.1 m/s and 1 rad/s.
 pub fn sliding(a: &super::Mesh, b: &super::Mesh, gap: f64, count: usize) -> Vec<Pose> {
-    let (pa, pb) = (super::polyhedron(a), super::polyhedron(b));
-    let size = pa.size() + pb.size();
     let mut rng = super::random(7);
     let (mut d, mut heading, mut q) = (unit(&mut rng), unit(&mut rng), rotation(&mut rng));
+    on_surface(a, b, gap, count, |_| {
+        heading = (heading + unit(&mut rng) * 0.02).normalize();
+        d = (d + heading * 0.001).normalize();
+        q = (DQuat::from_scaled_axis(unit(&mut rng) * 0.001) * q).normalize();
+        (d, q)
+    })
+}
+
+/// The same as a hand does it: `way` metres a sample, and a turn of `turn` radians about an axis that wanders slowly.
+pub fn sliding_by_hand(a: &super::Mesh, b: &super::Mesh, gap: f64, count: usize, way: f64, turn: f64) -> Vec<Pose> {
+    let mut rng = super::random(7);
+    let (mut d, mut heading, mut q) = (unit(&mut rng), unit(&mut rng), rotation(&mut rng));
+    let mut axis = unit(&mut rng);
+    on_surface(a, b, gap, count, |far| {
+        heading = (heading + unit(&mut rng) * 0.02).normalize();
+        axis = (axis + unit(&mut rng) * 0.02).normalize();
+        d = (d + heading.reject_from_normalized(d).normalize() * (way / far)).normalize();
+        q = (DQuat::from_scaled_axis(axis * turn) * q).normalize();
+        (d, q)
+    })
+}
+
+/// Poses at a signed distance `gap`, in the direction and at the orientation that `next` says; it is told how far the
+/// last one was.
+fn on_surface(
+    a: &super::Mesh,
+    b: &super::Mesh,
+    gap: f64,
+    count: usize,
+    mut next: impl FnMut(f64) -> (DVec3, DQuat),
+) -> Vec<Pose> {
+    let (pa, pb) = (super::polyhedron(a), super::polyhedron(b));
+    let size = pa.size() + pb.size();
     let mut out = Vec::with_capacity(count);
     let mut high = 2.0 * size;
     let mut tracker = cspace::Tracker::new(pa, pb);
     for _ in 0..count {
-        heading = (heading + unit(&mut rng) * 0.02).normalize();
-        d = (d + heading * 0.001).normalize();
-        q = (DQuat::from_scaled_axis(unit(&mut rng) * 0.001) * q).normalize();
+        let (d, q) = next(high);
         // Newton along the ray meets the plane exactly.
         for _ in 0..20 {
             let t = tracker.step(&Pose::new(d * high, q));
