@@ -84,13 +84,18 @@ pub fn is_applicable_turned(contact: BasicContact, a: &Polyhedron, b: &Polyhedro
             if u.cross(v).length() < PARALLEL {
                 return false;
             }
-            let n = b.edge(edge_b).faces.map(|f| b.face_plane(f).normal);
-            let m = a.edge(edge_a).faces.map(|f| -(*r * a.face_plane(f).normal));
-            let (p, q) = (n.map(|n| n.dot(u)), m.map(|m| m.dot(v)));
+            let ([f, g], [h, k]) = (b.edge(edge_b).faces, a.edge(edge_a).faces);
+            let n = [b.face_plane(f).normal, b.face_plane(g).normal];
+            let p = [n[0].dot(u), n[1].dot(u)];
+            if !(p[0] * p[1] < 0.0) {
+                return false;
+            }
+            let m = [-(*r * a.face_plane(h).normal), -(*r * a.face_plane(k).normal)];
+            let q = [m[0].dot(v), m[1].dot(v)];
             // The arcs separate each other's ends, and they do so in the same hemisphere: antipodal arcs pass the
             // first two tests as well.
             let crossing = (n[0] * p[1].abs() + n[1] * p[0].abs()).dot(m[0] * q[1].abs() + m[1] * q[0].abs());
-            p[0] * p[1] < 0.0 && q[0] * q[1] < 0.0 && crossing > 0.0
+            q[0] * q[1] < 0.0 && crossing > 0.0
         }
     }
 }
@@ -115,8 +120,9 @@ pub fn contact_point_turned(contact: BasicContact, a: &Polyhedron, b: &Polyhedro
         BasicContact::TypeA { vertex_b, .. } => b.vertex(vertex_b),
         BasicContact::TypeB { vertex_a, .. } => x + *r * a.vertex(vertex_a),
         BasicContact::TypeC { edge_a, edge_b } => {
-            let [a0, a1] = a.edge(edge_a).vertices.map(|v| x + *r * a.vertex(v));
-            let [b0, b1] = b.edge(edge_b).vertices.map(|v| b.vertex(v));
+            let ([a0, a1], [b0, b1]) = (a.edge(edge_a).vertices, b.edge(edge_b).vertices);
+            let (a0, a1) = (x + *r * a.vertex(a0), x + *r * a.vertex(a1));
+            let (b0, b1) = (b.vertex(b0), b.vertex(b1));
             let (u, v, w) = (a1 - a0, b1 - b0, b0 - a0);
             let (uu, uv, vv) = (u.dot(u), u.dot(v), v.dot(v));
             let sine2 = uu * vv - uv * uv;

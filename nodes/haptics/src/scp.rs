@@ -14,6 +14,8 @@ use spatial::{DVec3, Pose};
 pub(crate) const TIED: f64 = 1e-6;
 /// A pair is free of the SCP when its plane is violated by no more than this, metres; and touches up to as much above it.
 const FREED: f64 = 1e-9;
+/// Normals that differ by less than this, radians, are one wall's.
+const PARALLEL: f64 = 1e-12;
 /// Rounds in which planes are taken anew at the SCP found.
 const ROUNDS: usize = 12;
 /// An SCP farther than this many depths from the hand is compared with what other starts lead to.
@@ -137,11 +139,18 @@ impl Scp {
             return one.plane.distance < 0.0;
         }
         let placed = Placed::new(&Pose::new(hip.translation + self.shift, hip.rotation));
-        self.touches.iter().filter(|t| t.push > 0.0).all(|t| {
+        let touches_there = |t: &Touch| {
             let (a, b) = (solids.part(t.part as usize), solids.piece(t.piece as usize));
             let there = CFace { distance: 0.0, ..t.plane };
             facing_point(a, b, &placed, &there, FREED).is_some()
-        })
+        };
+        // Of the pieces that one wall is cut into, any may carry the force, and any other be touched.
+        let same_wall = |t: &Touch, u: &Touch| {
+            (t.plane.distance - u.plane.distance).abs() <= FREED
+                && t.plane.normal_w.distance_squared(u.plane.normal_w) <= PARALLEL * PARALLEL
+        };
+        let touched = |t: &Touch| touches_there(t) || self.touches.iter().any(|u| same_wall(t, u) && touches_there(u));
+        self.touches.iter().filter(|t| t.push > 0.0).all(touched)
     }
 
     /// Projection on the planes near the hand; returns the depth. Leaves planes in `touches` and, unless the depth alone is

@@ -3,7 +3,8 @@
 use crate::region::Placed;
 use crate::seams::{Cover, Seams};
 use cspace::{
-    BasicContact, CFace, Edge, EdgeId, FaceId, Polyhedron, World, contact_point_turned, is_applicable_turned,
+    BasicContact, CFace, Edge, EdgeId, FaceId, Plane, Polyhedron, VertexId, World, contact_point_turned,
+    is_applicable_turned,
 };
 use spatial::DVec3;
 use std::sync::Arc;
@@ -165,8 +166,15 @@ impl Solids {
         }
         let (a, b) = (self.part(part), self.piece(piece));
         let (center_a, center_b) = (placed.point(a.center()), placed.into_a(b.center()));
-        // A body holds a ball: its support lies at least as far behind a plane.
+        // A body lies at least as far behind a plane as the ball that it holds, and as any vertex: those at Near tell most.
         let (ball_a, ball_b) = (a.inner_radius(), b.inner_radius());
+        let [i, j, k] = vertices_of_a(a, &near.contact);
+        let at_a = [placed.point(a.vertex(i)), placed.point(a.vertex(j)), placed.point(a.vertex(k))];
+        let [i, j, k] = vertices_of_b(b, &near.contact);
+        let at_b = [placed.into_a(b.vertex(i)), placed.into_a(b.vertex(j)), placed.into_a(b.vertex(k))];
+        let is_beyond = |plane: &Plane, center: DVec3, ball: f64, at: &[DVec3; 3], known: f64| {
+            plane.signed_distance(center) - ball > known && at.iter().all(|p| plane.signed_distance(*p) > known)
+        };
         let mut known = best.map_or(f64::NEG_INFINITY, |f| f.distance);
         let mut offer = |face: CFace, known: &mut f64| {
             if face.distance > *known && self.is_felt_plane(part, piece, placed, &face) {
@@ -175,12 +183,12 @@ impl Solids {
             }
         };
         for face_b in b.faces().filter(|f| !self.is_internal_b(piece, *f)) {
-            if b.face_plane(face_b).signed_distance(center_a) - ball_a > known {
+            if is_beyond(&b.face_plane(face_b), center_a, ball_a, &at_a, known) {
                 offer(plane_of_face_b(a, b, placed, face_b), &mut known);
             }
         }
         for face_a in a.faces().filter(|f| !self.is_internal_a(part, *f)) {
-            if a.face_plane(face_a).signed_distance(center_b) - ball_b > known {
+            if is_beyond(&a.face_plane(face_a), center_b, ball_b, &at_b, known) {
                 offer(plane_of_face_a(a, b, placed, face_a), &mut known);
             }
         }
@@ -257,6 +265,28 @@ fn plane_of_face_b(a: &Polyhedron, b: &Polyhedron, placed: &Placed, face_b: Face
     let vertex_a = a.support(-(placed.r.transpose() * plane.normal));
     let distance = plane.signed_distance(placed.point(a.vertex(vertex_a)));
     CFace { contact: BasicContact::TypeB { vertex_a, face_b }, normal_w: plane.normal, distance }
+}
+
+/// Three vertices of A at a contact's features, some of them twice.
+fn vertices_of_a(a: &Polyhedron, c: &BasicContact) -> [VertexId; 3] {
+    match *c {
+        BasicContact::TypeA { face_a, .. } => three_of(a.face_vertices(face_a)),
+        BasicContact::TypeB { vertex_a, .. } => [vertex_a; 3],
+        BasicContact::TypeC { edge_a, .. } => three_of(&a.edge(edge_a).vertices),
+    }
+}
+
+fn vertices_of_b(b: &Polyhedron, c: &BasicContact) -> [VertexId; 3] {
+    match *c {
+        BasicContact::TypeA { vertex_b, .. } => [vertex_b; 3],
+        BasicContact::TypeB { face_b, .. } => three_of(b.face_vertices(face_b)),
+        BasicContact::TypeC { edge_b, .. } => three_of(&b.edge(edge_b).vertices),
+    }
+}
+
+/// Three of at least two, as far around the ring as it goes.
+fn three_of(ring: &[VertexId]) -> [VertexId; 3] {
+    [ring[0], ring[ring.len() / 2], ring[ring.len() - 1]]
 }
 
 fn edges_of_a<'a>(a: &'a Polyhedron, c: &BasicContact) -> &'a [EdgeId] {

@@ -4,7 +4,7 @@
 #[path = "../benches/tick/cases.rs"]
 mod cases;
 
-use cases::{CASES, LAWS, led_there, peg_in_hole, trembling};
+use cases::{CASES, LAWS, led_there, trembling};
 use servo::{Tick, TickInput};
 use std::hint::black_box;
 
@@ -21,11 +21,10 @@ fn main() {
     let case = args.next().unwrap_or_else(|| "jammed".into());
     let law = args.next().unwrap_or_else(|| "proxy".into());
     let ticks = args.next().and_then(|a| a.parse().ok()).unwrap_or(2000);
-    let scene = peg_in_hole();
     for c in CASES.iter().filter(|c| c.name == case) {
         for l in LAWS.into_iter().filter(|l| format!("{l:?}").eq_ignore_ascii_case(&law)) {
             let inputs = trembling(c, l, ticks);
-            all_ticks(&mut led_there(&scene, c, l), &inputs);
+            all_ticks(&mut led_there(c, l), &inputs);
         }
     }
 }

@@ -1,11 +1,13 @@
-//! What the ticks are measured on: the peg over, in, and jammed in the paper's hole of five pieces.
+//! What the ticks are measured on: the peg over, in, and jammed in the paper's hole, and in a corner of five pieces.
 
+use cspace::{FixedPart, Polyhedron, World};
 use device::Sample;
-use haptics::{Gains, LawKind};
+use haptics::{Gains, LawKind, Renderer};
 use scene::Scene;
 use servo::{Config, Tick, TickInput};
 use spatial::{DVec3, Pose, Stamp};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Where the hand trembles.
 #[derive(Clone, Copy)]
@@ -16,15 +18,24 @@ pub struct Case {
     /// How far it has turned the peg there, rotation vector, radians.
     turn: DVec3,
     seated: bool,
+    /// In the hole of four walls and a bottom, or in the corner that two cut walls and a bottom make.
+    hole: bool,
 }
 
 /// `free` hovers. `corner` pushes to the bottom and into a corner, 0.2 mm deep, so that the peg leans on two walls and the
-/// bottom. `jammed` also turns the peg about the vertical and about an edge, farther than the hole's clearance lets it:
+/// bottom. `five` does the same in a corner of five pieces, two to a wall, all of which it touches. `jammed` also turns the peg about the vertical and about an edge, farther than the hole's clearance lets it:
 /// it stands against all four walls and the bottom, five pieces at once.
-pub const CASES: [Case; 3] = [
-    Case { name: "free", place: DVec3::new(0.0, 0.0, 0.03), turn: DVec3::ZERO, seated: false },
-    Case { name: "corner", place: DVec3::new(2e-4, 1.5e-4, 0.0058), turn: DVec3::ZERO, seated: true },
-    Case { name: "jammed", place: DVec3::new(0.0, 0.0, 0.0055), turn: DVec3::new(0.0, 0.05, 0.06), seated: true },
+pub const CASES: [Case; 4] = [
+    Case { name: "free", place: DVec3::new(0.0, 0.0, 0.03), turn: DVec3::ZERO, seated: false, hole: true },
+    Case { name: "corner", place: DVec3::new(2e-4, 1.5e-4, 0.0058), turn: DVec3::ZERO, seated: true, hole: true },
+    Case { name: "five", place: DVec3::new(2e-4, 1.5e-4, 0.0058), turn: DVec3::ZERO, seated: true, hole: false },
+    Case {
+        name: "jammed",
+        place: DVec3::new(0.0, 0.0, 0.0055),
+        turn: DVec3::new(0.0, 0.05, 0.06),
+        seated: true,
+        hole: true,
+    },
 ];
 
 pub const LAWS: [LawKind; 4] = [LawKind::Paper, LawKind::Pstar, LawKind::Blended, LawKind::Proxy];
@@ -40,8 +51,9 @@ fn input(i: u64, pose: Pose, law: LawKind) -> TickInput {
 }
 
 /// A tick that has been led to the case's place through the mouth of the hole, as a hand would have brought the part.
-pub fn led_there(scene: &Scene, case: &Case, law: LawKind) -> Tick {
-    let mut tick = Tick::new(scene, &Config::default());
+pub fn led_there(case: &Case, law: LawKind) -> Tick {
+    let world = if case.hole { peg_in_hole() } else { corner_of_five() };
+    let mut tick = Tick::with_law(Box::new(Renderer::new(world)), &Config::default());
     let start = DVec3::Z * 0.03;
     for i in 0..WAY {
         let s = i as f64 / WAY as f64;
@@ -69,7 +81,30 @@ pub fn trembling(case: &Case, law: LawKind, ticks: usize) -> Vec<TickInput> {
     (WAY..WAY + ticks as u64).map(at).collect()
 }
 
-pub fn peg_in_hole() -> Scene {
+fn peg_in_hole() -> Arc<World> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config/scenes/peg_in_hole/scene.yaml");
-    Scene::load(&path).expect("the repository's scene")
+    Scene::load(&path).expect("the repository's scene").world
+}
+
+/// The same peg and place, but of the hole only the two walls that it is pushed against, each cut in two, and the bottom.
+fn corner_of_five() -> Arc<World> {
+    let boxes = [
+        ([8.125, -25.0, -9.0], [30.0, 0.0, 0.0]),
+        ([8.125, 0.0, -9.0], [30.0, 25.0, 0.0]),
+        ([-30.0, 5.105, -9.0], [0.0, 25.0, 0.0]),
+        ([0.0, 5.105, -9.0], [8.125, 25.0, 0.0]),
+        ([-30.0, -25.0, -14.0], [30.0, 25.0, -9.0]),
+    ];
+    let fixed = boxes.map(|(low, high)| FixedPart { polyhedron: Arc::new(cuboid(low, high)), obstacle: 0 });
+    let moving = vec![Arc::new(cuboid([-8.0, -5.0, -15.0], [8.0, 5.0, 15.0]))];
+    Arc::new(World { moving, fixed: fixed.to_vec() })
+}
+
+/// A box between two corners, millimetres.
+fn cuboid(low: [f64; 3], high: [f64; 3]) -> Polyhedron {
+    let corner =
+        |i: usize| DVec3::from_array(std::array::from_fn(|k| if i >> k & 1 == 0 { low[k] } else { high[k] })) * 1e-3;
+    let corners: Vec<DVec3> = (0..8).map(corner).collect();
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    Polyhedron::from_faces(&corners, &faces.map(|f| f.to_vec())).expect("a box is a polyhedron")
 }

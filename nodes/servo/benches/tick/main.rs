@@ -6,9 +6,8 @@
 
 mod cases;
 
-use cases::{CASES, Case, LAWS, led_there, peg_in_hole, trembling};
+use cases::{CASES, Case, LAWS, led_there, trembling};
 use haptics::LawKind;
-use scene::Scene;
 use servo::TickRecord;
 use std::hint::black_box;
 
@@ -16,16 +15,15 @@ const TICKS: usize = 40_000;
 const PASSES: usize = 5;
 
 fn main() {
-    let scene = peg_in_hole();
     let clock = clock_cost();
     for case in &CASES {
         for law in LAWS {
-            measure(&scene, case, law, clock);
+            measure(case, law, clock);
         }
     }
 }
 
-fn measure(scene: &Scene, case: &Case, law: LawKind, clock: u64) {
+fn measure(case: &Case, law: LawKind, clock: u64) {
     let inputs = trembling(case, law, TICKS);
     let mut contacts = Contacts::default();
     let mut all = Vec::with_capacity(PASSES * TICKS);
@@ -33,7 +31,7 @@ fn measure(scene: &Scene, case: &Case, law: LawKind, clock: u64) {
     let mut peer = Vec::with_capacity(PASSES * TICKS);
     let mut rounds = 1000;
     for pass in 0..PASSES {
-        let mut tick = led_there(scene, case, law);
+        let mut tick = led_there(case, law);
         for (input, least) in inputs.iter().zip(&mut least) {
             let start = cpu_ns();
             let record = black_box(tick.step(black_box(input)));
