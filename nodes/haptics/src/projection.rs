@@ -357,30 +357,28 @@ mod tests {
         let mut again = Projection::<6>::new();
         let mut kept = 0;
         let mut rows: Vec<Row<6>> = Vec::new();
+        let mut inside = [0.0; 6];
         for i in 0..3000 {
-            // New rows now and then, the old ones a little changed in between.
+            // New rows now and then, the old ones a little changed in between; feasible by construction.
             if i % 10 == 0 {
-                let random = |rng: &mut rand_pcg::Pcg64| std::array::from_fn(|_| rng.random_range(-1.0..1.0));
-                rows = (0..16).map(|_| row(random(&mut rng), rng.random_range(-0.3..0.3))).collect();
+                inside = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
+                rows = (0..16).map(|_| row(std::array::from_fn(|_| rng.random_range(-1.0..1.0)), 0.0)).collect();
             }
             for r in &mut rows {
-                r.offset += rng.random_range(-0.01..0.01);
                 r.normal[i % 6] += rng.random_range(-0.01..0.01);
+                r.offset = dot(&r.normal, &inside) - rng.random_range(0.0..0.02);
             }
             let mut anew = Projection::<6>::new();
             anew.solve(&rows);
             let before: Vec<usize> = again.active().map(|(k, _)| k).collect();
             again.solve_again(&rows);
-            if anew.contradictions > 0 {
-                continue;
-            }
             kept += usize::from(before.iter().all(|k| again.active().any(|(j, _)| j == *k)) && before.len() > 2);
-            assert_eq!(again.contradictions, 0);
+            assert_eq!(anew.contradictions + again.contradictions, 0);
             for j in 0..6 {
                 assert!((anew.z[j] - again.z[j]).abs() < 1e-8, "{i}: {:?} {:?}", anew.z, again.z);
             }
         }
-        assert!(kept > 1000, "{kept}");
+        assert!(kept > 300, "the last active rows should often stay: {kept}");
     }
 
     #[test]
