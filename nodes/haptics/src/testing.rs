@@ -1,9 +1,10 @@
-//! Bodies for the unit tests.
+//! Bodies for the unit tests, and for the tests of the laws.
 
 use cspace::Polyhedron;
 use spatial::DVec3;
 
-pub(crate) fn cuboid(low: DVec3, high: DVec3) -> Polyhedron {
+/// A box between two corners, metres.
+pub fn cuboid(low: DVec3, high: DVec3) -> Polyhedron {
     let v: Vec<DVec3> = (0..8)
         .map(|i| {
             DVec3::new(
