@@ -21,7 +21,7 @@ pub(crate) fn lone_contact(
         }
         BasicContact::TypeA { face_a, vertex_b } => {
             let at = b.vertex(vertex_b);
-            (b, vertex_b, -near.normal_w, a.face_sides(face_a), placed.into_a(at), at)
+            (b, vertex_b, -near.normal_w, a.face_sides(face_a), placed.seen_from_a(at), at)
         }
         BasicContact::TypeC { .. } => return None,
     };
@@ -55,7 +55,7 @@ pub(crate) fn facing_point(
         }
         BasicContact::TypeA { face_a, vertex_b } => {
             let p = b.vertex(vertex_b);
-            inside_ring(a, face_a, placed.into_a(p), tolerance).then_some(p)
+            inside_ring(a, face_a, placed.seen_from_a(p), tolerance).then_some(p)
         }
         BasicContact::TypeC { edge_a, edge_b } => {
             let [a0, a1] = a.edge(edge_a).vertices;

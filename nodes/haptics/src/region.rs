@@ -57,7 +57,7 @@ impl Placed {
     }
 
     /// A point of W as A sees it.
-    pub fn into_a(&self, p: DVec3) -> DVec3 {
+    pub fn seen_from_a(&self, p: DVec3) -> DVec3 {
         self.r.transpose() * (p - self.x)
     }
 }

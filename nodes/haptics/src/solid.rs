@@ -54,7 +54,7 @@ impl Solids {
 
     /// The same of a part of A.
     pub fn goes_on_a(&self, part: usize, face: FaceId, side: usize, point_w: DVec3, placed: &Placed) -> bool {
-        !self.moving.is_alone(part) && self.moving.goes_on(part, face, side, placed.into_a(point_w))
+        !self.moving.is_alone(part) && self.moving.goes_on(part, face, side, placed.seen_from_a(point_w))
     }
 
     /// The face of part `other` that is one plane with this one of `part`, which may be `other` itself.
@@ -113,7 +113,7 @@ impl Solids {
     /// the pair is free.
     pub fn a_face_parts(&self, part: usize, piece: usize, placed: &Placed, slack: f64) -> bool {
         let (a, b) = (self.part(part), self.piece(piece));
-        let (center_a, center_b) = (placed.point(a.center()), placed.into_a(b.center()));
+        let (center_a, center_b) = (placed.point(a.center()), placed.seen_from_a(b.center()));
         // A body lies between the ball it holds and the ball that holds it: that settles most planes.
         b.faces().any(|f| {
             let over = b.face_plane(f).signed_distance(center_a) + slack;
@@ -165,13 +165,13 @@ impl Solids {
             return best;
         }
         let (a, b) = (self.part(part), self.piece(piece));
-        let (center_a, center_b) = (placed.point(a.center()), placed.into_a(b.center()));
+        let (center_a, center_b) = (placed.point(a.center()), placed.seen_from_a(b.center()));
         // A body lies at least as far behind a plane as the ball that it holds, and as any vertex: those at Near tell most.
         let (ball_a, ball_b) = (a.inner_radius(), b.inner_radius());
         let [i, j, k] = vertices_of_a(a, &near.contact);
         let at_a = [placed.point(a.vertex(i)), placed.point(a.vertex(j)), placed.point(a.vertex(k))];
         let [i, j, k] = vertices_of_b(b, &near.contact);
-        let at_b = [placed.into_a(b.vertex(i)), placed.into_a(b.vertex(j)), placed.into_a(b.vertex(k))];
+        let at_b = [placed.seen_from_a(b.vertex(i)), placed.seen_from_a(b.vertex(j)), placed.seen_from_a(b.vertex(k))];
         let is_beyond = |plane: &Plane, center: DVec3, ball: f64, at: &[DVec3; 3], known: f64| {
             plane.signed_distance(center) - ball > known && at.iter().all(|p| plane.signed_distance(*p) > known)
         };
