@@ -41,10 +41,10 @@ impl ApplicabilityGraph {
         let top = places.iter().map(|p| p[1]).fold(0.0, f32::min);
         let mut ids: Vec<String> = (0..pair.faces.len()).map(|i| format!("n{i}")).collect();
         let mut labels: Vec<&str> = shown.iter().map(|(text, _)| text.as_str()).collect();
-        let mut colors: Vec<Rgba32> = pair.roles.iter().map(|role| palette::solid(color(*role))).collect();
+        let mut colors: Vec<Rgba32> = pair.roles.iter().map(|role| palette::ink(color(*role))).collect();
         let mut positions = places;
         ids.push("title".into());
-        colors.push(palette::solid(palette::PLAIN));
+        colors.push(palette::ink(palette::PLAIN));
         positions.push([0.0, top - 30.0]);
         labels.truncate(ids.len());
         let nodes = GraphNodes::new(ids.iter().map(String::as_str))

@@ -2,7 +2,7 @@ use crate::clock::{ROBOT_TIME, TICK};
 use crate::eye::{Eye, Eyes};
 use crate::layout::{Node, View, send};
 use crate::sink::APPLICATION;
-use crate::{applicability, contact_states, cspace_view, events, legend, palette, physical, series};
+use crate::{applicability, contact_states, cspace_view, events, legend, physical, series};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     Background, LineGrid3D, PlotLegend, TextLogColumns, TimePanelBlueprint, VisibleTimeRanges, VisualBounds2D,
 };
@@ -27,7 +27,8 @@ fn view_3d(stream: &RecordingStream, title: &str, root: &str, eye: &Eye) -> Reco
     let view = view
         .with("EyeControls3D", eye.controls())
         .with("LineGrid3D", LineGrid3D::new().with_visible(false))
-        .with("Background", Background::new(BackgroundKind::SolidColor).with_color(palette::solid(palette::GROUND)));
+        // Of no colour of its own it is white in the viewer's light theme and black in the dark one.
+        .with("Background", Background::new(BackgroundKind::SolidColor));
     Ok(view)
 }
 

@@ -82,7 +82,7 @@ impl ContactStates {
             let now = self.current.as_ref() == Some(state);
             let label = format!("{}{}\n{seconds:.2} s", if now { "▶ " } else { "" }, name(subject, state));
             let color = if now { palette::SCP } else { palette::FORMATIONS[state.0 as usize] };
-            nodes.push((id(state), position, label, palette::solid(color)));
+            nodes.push((id(state), position, label, palette::ink(color)));
         }
         let drawn = GraphNodes::new(nodes.iter().map(|n| n.0.as_str()))
             .with_positions(nodes.iter().map(|n| n.1))

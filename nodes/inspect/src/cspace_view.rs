@@ -43,7 +43,7 @@ const LOOKS: [Look; 4] = [
         role: Role::Local,
         entity: "/cspace_m/c_faces/local",
         color: palette::LOCAL,
-        fill: 0.22,
+        fill: 0.28,
         edge: 0.9,
         width: 1.4,
     },
@@ -51,7 +51,7 @@ const LOOKS: [Look; 4] = [
         role: Role::Other,
         entity: "/cspace_m/c_faces/other",
         color: palette::OTHER,
-        fill: 0.07,
+        fill: 0.1,
         edge: 0.45,
         width: 0.8,
     },
@@ -140,7 +140,7 @@ impl CSpaceView {
         };
         let anchors = Points3D::new(labels.iter().map(|l| l.0.as_vec3().to_array()))
             .with_labels(labels.iter().map(|l| l.1))
-            .with_colors(labels.iter().map(|l| palette::solid(l.2)))
+            .with_colors(labels.iter().map(|l| palette::ink(l.2)))
             .with_radii([Radius::new_ui_points(0.5)])
             .with_show_labels(true);
         stream.log(format!("{LEADERS}/labels"), &anchors)?;

@@ -50,7 +50,7 @@ impl Events {
             if self.formation.as_ref() != Some(&formation) {
                 let level =
                     if record.formation.kind == FormationKind::Free { TextLogLevel::DEBUG } else { TextLogLevel::INFO };
-                let color = palette::solid(palette::FORMATIONS[record.formation.kind as usize]);
+                let color = palette::ink(palette::FORMATIONS[record.formation.kind as usize]);
                 stream.log(EVENTS, &TextLog::new(formation.as_str()).with_level(level).with_color(color))?;
                 self.formation = Some(formation);
             }

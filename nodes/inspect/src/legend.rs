@@ -56,11 +56,10 @@ pub(crate) fn open_overview(stream: &RecordingStream) -> RecordingStreamResult<(
 
 fn draw(stream: &RecordingStream, entries: &[(&str, palette::Rgb)]) -> RecordingStreamResult<()> {
     let place = |i: usize| [(i % COLUMNS) as f32 * STEP[0], (i / COLUMNS) as f32 * STEP[1]];
-    let colors: Vec<_> = entries.iter().map(|(_, color)| palette::solid(*color)).collect();
     // Short thick lines make filled fields.
     let bar = |i: usize| [-0.6, 0.6].map(|x| [place(i)[0] + x, place(i)[1]]);
     let fields = LineStrips2D::new((0..entries.len()).map(bar))
-        .with_colors(colors.clone())
+        .with_colors(entries.iter().map(|(_, color)| palette::solid(*color)))
         .with_radii([Radius::new_ui_points(7.0)]);
     stream.log_static(format!("{LEGEND}/fields"), &fields)?;
     // A label stands below its point, in its middle: the points are moved so that it stands right of the field.
@@ -70,7 +69,7 @@ fn draw(stream: &RecordingStream, entries: &[(&str, palette::Rgb)]) -> Recording
     };
     let texts = Points2D::new((0..entries.len()).map(text))
         .with_labels(entries.iter().map(|(text, _)| *text))
-        .with_colors(colors)
+        .with_colors(entries.iter().map(|(_, color)| palette::ink(*color)))
         .with_radii([Radius::new_ui_points(0.1)])
         .with_show_labels(true);
     stream.log_static(format!("{LEGEND}/texts"), &texts)

@@ -28,10 +28,10 @@ pub(crate) const PLOTS: &[Plot] = &[
         value: |r, out| out.extend(r.out_wrench.force.to_array()),
     },
     Plot {
-        entity: "/series/torque_Nm",
-        title: "Torque on the hand [N.m], about A's origin",
-        lines: &[("Tx [N.m]", palette::AXES[0]), ("Ty [N.m]", palette::AXES[1]), ("Tz [N.m]", palette::AXES[2])],
-        value: |r, out| out.extend(r.out_wrench.torque.to_array()),
+        entity: "/series/torque_mNm",
+        title: "Torque on the hand [mN.m], about A's origin",
+        lines: &[("Tx [mN.m]", palette::AXES[0]), ("Ty [mN.m]", palette::AXES[1]), ("Tz [mN.m]", palette::AXES[2])],
+        value: |r, out| out.extend(r.out_wrench.torque.to_array().map(|t| t * 1e3)),
     },
     Plot {
         entity: "/series/depth_mm",

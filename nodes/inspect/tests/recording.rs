@@ -29,7 +29,7 @@ fn a_run_leaves_every_tick_and_thirty_frames_a_second() {
     let subject = support::peg_on_plate();
     let messages = record(&subject, &support::run(&subject, 2000));
     let chunks = chunks(&messages, StoreKind::Recording);
-    for series in ["force_N", "torque_Nm", "depth_mm", "energy_mJ", "time_us"] {
+    for series in ["force_N", "torque_mNm", "depth_mm", "energy_mJ", "time_us"] {
         let entity = format!("/series/{series}");
         assert_eq!(rows(&chunks, &entity, "Scalars:scalars"), 2000, "{entity}");
         assert_eq!(rows(&chunks, &entity, "SeriesLines:names"), 1, "{entity}");

@@ -74,7 +74,7 @@ const PICTURES: [Picture; 3] = [
 
 /// Size in logical points; the viewer draws each as two by two pixels without a screen.
 const SIZE: &str = "1600x900";
-/// Takes two drawings of the same recording. Writes the picture if both are whole: the ground of the 3D views is in it,
+/// Takes two drawings of the same recording. Writes the picture if both are whole: the legend's first colour is in it,
 /// and they are alike but for single pixels; the viewer may have drawn before it had read everything. Pixels are averaged
 /// back to logical points: smooth lines, and files that a repository can hold.
 const SETTLE: &str = "
@@ -82,9 +82,9 @@ import sys
 from PIL import Image, ImageChops
 first, second = (Image.open(name).convert('RGB') for name in sys.argv[1:3])
 pixels = first.width * first.height
-ground = sum(count for count, color in second.getcolors(pixels) if color == (0x17, 0x1B, 0x22))
+legend = sum(count for count, color in second.getcolors(pixels) if color == (0xD5, 0x3E, 0x0F))
 other = ImageChops.difference(first, second).convert('L').point(lambda value: 255 if value > 32 else 0)
-if ground < 0.05 * pixels or other.histogram()[255] > 0.001 * pixels:
+if legend < 500 or other.histogram()[255] > 0.001 * pixels:
     sys.exit(2)
 size = second.width // 2, second.height // 2
 second.resize(size, Image.Resampling.LANCZOS).save(sys.argv[3], optimize=True)
