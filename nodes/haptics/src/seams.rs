@@ -1,6 +1,6 @@
 //! Seams between convex pieces of one body: which contacts are artefacts of the cutting.
 
-use cspace::{EdgeId, FaceId, Polyhedron, VertexId};
+use cspace::{EdgeId, FaceId, Polyhedron, VertexId, cut_out, polygon_area};
 use spatial::DVec3;
 use std::sync::Arc;
 
@@ -262,12 +262,17 @@ fn cover_of<'a>(
 ) -> Cover {
     let normal = piece.face_plane(face).normal;
     let ring: Vec<DVec3> = piece.face_vertices(face).iter().map(|v| piece.vertex(*v)).collect();
-    let whole = area(&ring, normal);
+    let whole = polygon_area(&ring, normal);
     let mut open = vec![ring];
     for other in others {
-        open = open.into_iter().flat_map(|polygon| outside_of(polygon, other, normal, tolerance)).collect();
+        let height = |f: FaceId| {
+            let plane = other.face_plane(f);
+            move |p: DVec3| plane.signed_distance(p + normal * (4.0 * tolerance)) - tolerance
+        };
+        let heights: Vec<_> = other.faces().map(height).collect();
+        open = open.into_iter().flat_map(|polygon| cut_out(polygon, &heights).0).collect();
     }
-    let left: f64 = open.iter().map(|polygon| area(polygon, normal)).sum();
+    let left: f64 = open.iter().map(|polygon| polygon_area(polygon, normal)).sum();
     if left <= 1e-4 * whole {
         Cover::Internal
     } else if left < (1.0 - 1e-6) * whole {
@@ -275,50 +280,6 @@ fn cover_of<'a>(
     } else {
         Cover::Open
     }
-}
-
-/// The convex parts of a convex polygon that lie outside of a piece when lifted a little along `normal`: for each face
-/// of the piece in turn what lies beyond it; what lies beyond none is inside.
-fn outside_of(mut polygon: Vec<DVec3>, other: &Polyhedron, normal: DVec3, tolerance: f64) -> Vec<Vec<DVec3>> {
-    let mut outside = Vec::new();
-    for f in other.faces() {
-        let plane = other.face_plane(f);
-        let height = |p: DVec3| plane.signed_distance(p + normal * (4.0 * tolerance)) - tolerance;
-        let (inner, beyond) = split(&polygon, height);
-        if beyond.len() > 2 {
-            outside.push(beyond);
-        }
-        polygon = inner;
-        if polygon.len() < 3 {
-            break;
-        }
-    }
-    outside
-}
-
-/// The parts of a convex polygon where `height` is not positive, and where it is.
-fn split(polygon: &[DVec3], height: impl Fn(DVec3) -> f64) -> (Vec<DVec3>, Vec<DVec3>) {
-    let (mut below, mut above) = (Vec::with_capacity(polygon.len() + 1), Vec::new());
-    for (k, p) in polygon.iter().enumerate() {
-        let q = polygon[(k + 1) % polygon.len()];
-        let (hp, hq) = (height(*p), height(q));
-        if hp <= 0.0 {
-            below.push(*p)
-        } else {
-            above.push(*p)
-        }
-        if (hp <= 0.0) != (hq <= 0.0) {
-            let crossing = *p + (q - *p) * (hp / (hp - hq));
-            below.push(crossing);
-            above.push(crossing);
-        }
-    }
-    (below, above)
-}
-
-fn area(polygon: &[DVec3], normal: DVec3) -> f64 {
-    let Some(first) = polygon.first() else { return 0.0 };
-    0.5 * polygon.windows(2).map(|w| (w[0] - *first).cross(w[1] - *first).dot(normal)).sum::<f64>()
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use crate::palette;
 use crate::physical::{ArrowScale, arrow};
 use crate::slice::{PairSlice, Role};
 use crate::surface::Surface;
+use crate::union::{self, Obstacle};
 use glam::DVec3;
 use rerun::components::Radius;
 use rerun::{Clear, LineStrips3D, Points3D, RecordingStream, RecordingStreamResult};
@@ -93,12 +94,8 @@ impl CSpaceView {
     }
 
     fn polygons(&mut self, stream: &RecordingStream, slices: &[PairSlice], now: f64) -> RecordingStreamResult<()> {
-        let mut surfaces: [Surface; 4] = Default::default();
-        for slice in slices {
-            for (face, role) in slice.faces.iter().zip(&slice.roles) {
-                surfaces[*role as usize].push(&face.vertices, face.normal_w);
-            }
-        }
+        let obstacles: Vec<Obstacle<'_>> = slices.iter().map(obstacle).collect();
+        let surfaces: [Surface; 4] = union::surfaces(&obstacles, Role::Near as usize);
         let changed: Vec<usize> = (0..4).filter(|&i| surfaces[i] != self.drawn[i]).collect();
         let bytes = changed.iter().map(|&i| surfaces[i].bytes()).sum();
         if changed.is_empty() || !self.budget.spend(now, bytes) {
@@ -153,6 +150,12 @@ impl CSpaceView {
         stream.log(PROJECTION, &segments(&projection, 2.0))?;
         stream.log(FORCE, &arrow(scp, force * scale.force, palette::FORCE))
     }
+}
+
+/// The C-faces of a pair, each with the place of its role among `LOOKS`.
+fn obstacle(slice: &PairSlice) -> Obstacle<'_> {
+    let surfaces = slice.roles.iter().map(|role| *role as usize);
+    Obstacle { faces: slice.faces.iter().zip(surfaces).collect(), whole: slice.whole }
 }
 
 fn marker(at: DVec3, color: palette::Rgb) -> Points3D {

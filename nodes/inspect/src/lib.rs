@@ -26,6 +26,7 @@ mod sink;
 mod slice;
 mod subject;
 mod surface;
+mod union;
 
 pub use error::InspectError;
 pub use eye::{Eye, Eyes};

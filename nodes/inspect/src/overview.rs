@@ -4,6 +4,7 @@ use crate::pairs::Pairs;
 use crate::sink::Sink;
 use crate::subject::Subject;
 use crate::surface::Surface;
+use crate::union::{self, Obstacle};
 use crate::{InspectError, legend, palette, physical};
 use cspace::{BasicContact, CFacePolygon};
 use glam::{DQuat, DVec3};
@@ -70,14 +71,18 @@ fn c_obstacles(
     pairs: &mut Pairs,
     pose: &Pose,
 ) -> RecordingStreamResult<()> {
-    let mut surfaces: [Surface; 4] = Default::default();
+    let mut polygons = Vec::new();
     for part in 0..subject.world.moving.len() {
         for piece in 0..subject.world.fixed.len() {
-            for face in pairs.polygons(&subject.world, (part, piece), pose, f64::INFINITY) {
-                surfaces[kind(&face)].push(&face.vertices, face.normal_w);
-            }
+            let faces = pairs.polygons(&subject.world, (part, piece), pose, f64::INFINITY);
+            polygons.push((faces, pairs.is_whole(part, piece)));
         }
     }
+    let mut obstacles = Vec::new();
+    for (faces, whole) in &polygons {
+        obstacles.push(Obstacle { faces: faces.iter().map(|face| (face, kind(face))).collect(), whole: *whole });
+    }
+    let surfaces: [Surface; 4] = union::surfaces(&obstacles, 0);
     for ((name, color), surface) in KINDS.iter().zip(&surfaces) {
         let entity = format!("{C_OBSTACLES}/{name}");
         if surface.is_empty() {

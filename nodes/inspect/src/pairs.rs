@@ -27,6 +27,11 @@ impl Pairs {
         Self { trackers }
     }
 
+    /// Whether all C-faces of a pair are drawn.
+    pub(crate) fn is_whole(&self, part: usize, piece: usize) -> bool {
+        !self.trackers.contains_key(&(part, piece))
+    }
+
     /// The polygons of one pair with A at `pose`, which must be valid. Of a large pair none if its C-obstacle is farther
     /// than `reach` (metres) from `x`.
     pub(crate) fn polygons(

@@ -29,6 +29,8 @@ pub(crate) struct PairSlice {
     pub piece: usize,
     /// Its faces; of large bodies those around Near.
     pub faces: Vec<CFacePolygon>,
+    /// Whether these are all.
+    pub whole: bool,
     /// The role of each face.
     pub roles: Vec<Role>,
     /// Index of Near.
@@ -61,7 +63,7 @@ pub(crate) fn slice(
             }
             let far = if touching.is_empty() { reach } else { f64::INFINITY };
             let faces = pairs.polygons(world, (part, piece), pose, far);
-            if let Some(slice) = classify(part, piece, faces, pose, &touching)
+            if let Some(slice) = classify((part, piece), faces, pairs.is_whole(part, piece), pose, &touching)
                 && (slice.distance < reach || !touching.is_empty())
             {
                 slices.push(slice);
@@ -87,9 +89,9 @@ fn quiet(slices: &mut [PairSlice]) {
 }
 
 fn classify(
-    part: usize,
-    piece: usize,
+    (part, piece): (usize, usize),
     faces: Vec<CFacePolygon>,
+    whole: bool,
     pose: &Pose,
     touching: &[BasicContact],
 ) -> Option<PairSlice> {
@@ -109,5 +111,5 @@ fn classify(
     };
     let roles = (0..faces.len()).map(role).collect();
     let distance = distances[near];
-    Some(PairSlice { part, piece, faces, roles, near, distance })
+    Some(PairSlice { part, piece, faces, whole, roles, near, distance })
 }

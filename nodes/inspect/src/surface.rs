@@ -29,17 +29,39 @@ impl Surface {
 
     /// Adds a convex polygon: corners counter-clockwise seen from the tip of `normal`.
     pub(crate) fn push(&mut self, corners: &[DVec3], normal: DVec3) {
+        self.fill(corners, normal);
+        self.line(corners.iter().chain(corners.first()));
+    }
+
+    /// Adds the area of a convex polygon.
+    pub(crate) fn fill(&mut self, corners: &[DVec3], normal: DVec3) {
         let first = self.positions.len() as u32;
         self.positions.extend(corners.iter().map(|c| c.as_vec3().to_array()));
         self.normals.extend(std::iter::repeat_n(normal.as_vec3().to_array(), corners.len()));
         let fan = (1..(corners.len() as u32).saturating_sub(1)).map(|i| [first, first + i, first + i + 1]);
         self.triangles.extend(fan);
-        let ring = corners.iter().chain(corners.first());
-        self.outlines.push(ring.map(|c| c.as_vec3().to_array()).collect());
+    }
+
+    /// Adds an edge.
+    pub(crate) fn line<'p>(&mut self, points: impl IntoIterator<Item = &'p DVec3>) {
+        self.outlines.push(points.into_iter().map(|c| c.as_vec3().to_array()).collect());
     }
 
     pub(crate) fn is_empty(&self) -> bool {
         self.positions.is_empty()
+    }
+
+    /// The corners of its triangles.
+    #[cfg(test)]
+    pub(crate) fn triangles(&self) -> impl Iterator<Item = [DVec3; 3]> + '_ {
+        let corner = |i: u32| DVec3::from_array(self.positions[i as usize].map(f64::from));
+        self.triangles.iter().map(move |t| t.map(corner))
+    }
+
+    /// Its edges.
+    #[cfg(test)]
+    pub(crate) fn lines(&self) -> impl Iterator<Item = Vec<DVec3>> + '_ {
+        self.outlines.iter().map(|line| line.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect())
     }
 
     /// Bytes that it takes in a file, before compression.

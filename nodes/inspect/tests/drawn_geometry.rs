@@ -16,41 +16,60 @@ const SINGLE: f64 = 2e-7;
 
 /// The rows of a component by tick, each a list of vectors.
 fn vectors(chunks: &[Chunk], component: &'static str) -> BTreeMap<i64, Vec<DVec3>> {
+    let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
     let mut rows = BTreeMap::new();
     for chunk in chunks {
         let ticks = chunk.iter_component_indices("tick".into(), component.into()).map(|(tick, _)| tick.as_i64());
         let values = chunk.iter_slices::<[f32; 3]>(component.into());
-        for (tick, row) in ticks.zip(values) {
-            rows.insert(tick, row.iter().map(|v| DVec3::new(v[0].into(), v[1].into(), v[2].into())).collect());
-        }
+        rows.extend(ticks.zip(values.map(|row| row.iter().map(|v| vector(*v)).collect())));
     }
     rows
 }
 
-/// The polygons of one role by tick, and their normals: outlines are closed rings.
-fn polygons(recording: &BTreeMap<String, Vec<Chunk>>, role: &str) -> BTreeMap<i64, Vec<(Vec<DVec3>, DVec3)>> {
+/// The triangles of a mesh by tick, as indices of its corners.
+fn indices(chunks: &[Chunk]) -> BTreeMap<i64, Vec<[usize; 3]>> {
+    let mut rows = BTreeMap::new();
+    for chunk in chunks {
+        let component = "Mesh3D:triangle_indices";
+        let ticks = chunk.iter_component_indices("tick".into(), component.into()).map(|(tick, _)| tick.as_i64());
+        let values = chunk.iter_slices::<[u32; 3]>(component.into());
+        rows.extend(ticks.zip(values.map(|row| row.iter().map(|t| t.map(|i| i as usize)).collect())));
+    }
+    rows
+}
+
+type Triangle = [DVec3; 3];
+
+/// What is drawn of the C-faces of one role by tick: triangles and the normal of each C-face.
+fn polygons(recording: &BTreeMap<String, Vec<Chunk>>, role: &str) -> BTreeMap<i64, Vec<(Vec<Triangle>, DVec3)>> {
     let mesh = &recording[&format!("/cspace_m/c_faces/{role}")];
     let corners = vectors(mesh, "Mesh3D:vertex_positions");
     let normals = vectors(mesh, "Mesh3D:vertex_normals");
-    // The corners of one polygon follow each other and have its normal.
-    let split = |corners: &Vec<DVec3>, normals: &Vec<DVec3>| {
-        let mut polygons: Vec<(Vec<DVec3>, DVec3)> = Vec::new();
-        for (corner, normal) in corners.iter().zip(normals) {
+    let triangles = indices(mesh);
+    // The triangles of one C-face follow each other and have its normal.
+    let split = |tick: &i64| {
+        let (corners, normals) = (&corners[tick], &normals[tick]);
+        let mut polygons: Vec<(Vec<Triangle>, DVec3)> = Vec::new();
+        for triangle in &triangles[tick] {
+            let (points, normal) = (triangle.map(|i| corners[i]), normals[triangle[0]]);
             match polygons.last_mut() {
-                Some((ring, n)) if n == normal => ring.push(*corner),
-                _ => polygons.push((vec![*corner], *normal)),
+                Some((area, n)) if *n == normal => area.push(points),
+                _ => polygons.push((vec![points], normal)),
             }
         }
         polygons
     };
-    corners.iter().map(|(tick, corners)| (*tick, split(corners, &normals[tick]))).collect()
+    corners.keys().map(|tick| (*tick, split(tick))).collect()
 }
 
-/// How far a point lies outside a convex ring that runs counter-clockwise around `normal`; `<= 0` within.
-fn outside(point: DVec3, ring: &[DVec3], normal: DVec3) -> f64 {
-    let sides = (0..ring.len()).map(|i| (ring[i], ring[(i + 1) % ring.len()]));
-    let beyond = sides.map(|(from, to)| (point - from).dot((to - from).cross(normal).normalize()));
-    beyond.fold(f64::NEG_INFINITY, f64::max)
+/// How far a point lies outside of all triangles, which run counter-clockwise around `normal`; `<= 0` within.
+fn outside(point: DVec3, triangles: &[Triangle], normal: DVec3) -> f64 {
+    let beyond = |t: &Triangle| {
+        let sides = (0..3).map(|i| (t[i], t[(i + 1) % 3]));
+        let beyond = sides.map(|(from, to)| (point - from).dot((to - from).cross(normal).normalize_or_zero()));
+        beyond.fold(f64::NEG_INFINITY, f64::max)
+    };
+    triangles.iter().map(beyond).fold(f64::INFINITY, f64::min)
 }
 
 #[test]
@@ -71,10 +90,11 @@ fn the_scp_lies_on_the_c_faces_in_contact_and_the_force_leaves_them_along_their_
     let (mut single, mut several) = (0, 0);
     for (tick, touching) in polygons(&recording, "touching") {
         let (scp, hip) = (scp[&tick][0], hip[&tick][0]);
-        for (ring, normal) in &touching {
-            assert!((scp - ring[0]).dot(*normal).abs() < SINGLE, "tick {tick}: the SCP is off the C-face's plane");
-            assert!(outside(scp, ring, *normal) < SINGLE, "tick {tick}: the SCP is beside the C-face");
-            assert!((hip - ring[0]).dot(*normal) < SINGLE, "tick {tick}: the HIP is outside");
+        for (area, normal) in &touching {
+            let on_it = area[0][0];
+            assert!((scp - on_it).dot(*normal).abs() < SINGLE, "tick {tick}: the SCP is off the C-face's plane");
+            assert!(outside(scp, area, *normal) < SINGLE, "tick {tick}: the SCP is beside the C-face");
+            assert!((hip - on_it).dot(*normal) < SINGLE, "tick {tick}: the HIP is outside");
         }
         let Some(&force) = force[&tick].first() else { continue };
         assert!(origin[&tick][0].distance(scp) < SINGLE, "tick {tick}: the force does not start at the SCP");
@@ -115,7 +135,7 @@ fn large(faces: usize) {
     assert!(!near.is_empty());
     let others: usize = polygons(&recording, "other").values().map(Vec::len).max().unwrap_or(0);
     assert!((100..=200).contains(&others), "{others} C-faces around Near");
-    assert!(polygons(&recording, "local").values().all(|ring| ring.len() >= 3));
+    assert!(polygons(&recording, "local").values().all(|faces| !faces.is_empty()));
 }
 
 #[test]
