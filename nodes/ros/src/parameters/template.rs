@@ -1,32 +1,21 @@
 use super::Declared;
 use r2r::ParameterValue as V;
-use std::fmt::Write;
+use servo::config::parameter_file;
 
 /// A parameter file of a node with every default and its meaning, to start from: those of `config/`.
 #[must_use]
 pub fn yaml_template(node: &str, declared: &[Declared]) -> String {
-    let mut text = format!("# Parameters of {node}, with their defaults. Generated from what the node declares.\n");
-    text += "/**:\n  ros__parameters:\n";
-    let mut open: Vec<&str> = Vec::new();
-    for parameter in declared {
-        let mut path: Vec<&str> = parameter.name.split('.').collect();
-        let leaf = path.pop().unwrap_or_default();
-        let shared = open.iter().zip(&path).take_while(|(a, b)| a == b).count();
-        for (level, group) in path.iter().enumerate().skip(shared) {
-            let _ = writeln!(text, "{}{group}:", "  ".repeat(level + 2));
-        }
-        open = path;
-        let indent = "  ".repeat(open.len() + 2);
+    let head = format!("# Parameters of {node}, with their defaults. Generated from what the node declares.\n");
+    let comment = |parameter: &Declared| {
         let allowed = match parameter.range {
             Some((min, max)) => format!("{min} to {max}; "),
             None if !parameter.choices.is_empty() => format!("{}; ", parameter.choices.join(", ")),
             None => String::new(),
         };
         let change = if parameter.live { "live" } else { "at start" };
-        let _ = writeln!(text, "{indent}# {} ({allowed}{change})", parameter.description);
-        let _ = writeln!(text, "{indent}{leaf}: {}", value(&parameter.default));
-    }
-    text
+        format!("{} ({allowed}{change})", parameter.description)
+    };
+    parameter_file(&head, declared.iter().map(|p| (p.name.as_str(), Some(comment(p)), value(&p.default))))
 }
 
 fn value(value: &V) -> String {

@@ -1,4 +1,4 @@
-use super::{Config, schema};
+use super::{Config, ParamSpec, schema};
 use std::fmt::Write;
 
 /// The parameter file with every default and its meaning: `config/haptic_servo.param.yaml`.
@@ -9,14 +9,26 @@ pub fn yaml_template() -> String {
 
 /// A ROS 2 parameter file of all parameters, with or without their meanings as comments.
 pub(super) fn yaml(config: &Config, comments: bool) -> String {
-    let mut text = String::new();
-    if comments {
-        text += "# Parameters of haptic_servo, with their defaults.\n# Generated from the schema in nodes/servo/src/config/schema.rs.\n";
-    }
-    text += "/**:\n  ros__parameters:\n";
+    let head = "# Parameters of haptic_servo, with their defaults.\n# Generated from the schema in nodes/servo/src/config/schema.rs.\n";
+    let line = |spec: &ParamSpec| {
+        let unit = if spec.unit.is_empty() { String::new() } else { format!(" {}", spec.unit) };
+        let change = if spec.live { "live" } else { "at start" };
+        let comment = format!("{} [{}{unit}; {change}]", spec.meaning, spec.range_text());
+        (spec.name, comments.then_some(comment), (spec.get)(config).to_string())
+    };
+    parameter_file(if comments { head } else { "" }, schema().iter().map(line))
+}
+
+/// A ROS 2 parameter file for any node: dotted names become levels, and a level is opened once if its names follow each
+/// other. Each parameter is its name, a comment for the line above, and its value as YAML.
+pub fn parameter_file<'n>(
+    head: &str,
+    parameters: impl IntoIterator<Item = (&'n str, Option<String>, String)>,
+) -> String {
+    let mut text = format!("{head}/**:\n  ros__parameters:\n");
     let mut open: Vec<&str> = Vec::new();
-    for spec in schema() {
-        let mut path: Vec<&str> = spec.name.split('.').collect();
+    for (name, comment, value) in parameters {
+        let mut path: Vec<&str> = name.split('.').collect();
         let leaf = path.pop().unwrap_or_default();
         let shared = open.iter().zip(&path).take_while(|(a, b)| a == b).count();
         for (level, group) in path.iter().enumerate().skip(shared) {
@@ -24,12 +36,10 @@ pub(super) fn yaml(config: &Config, comments: bool) -> String {
         }
         open = path;
         let indent = "  ".repeat(open.len() + 2);
-        if comments {
-            let unit = if spec.unit.is_empty() { String::new() } else { format!(" {}", spec.unit) };
-            let change = if spec.live { "live" } else { "at start" };
-            let _ = writeln!(text, "{indent}# {} [{}{unit}; {change}]", spec.meaning, spec.range_text());
+        if let Some(comment) = comment {
+            let _ = writeln!(text, "{indent}# {comment}");
         }
-        let _ = writeln!(text, "{indent}{leaf}: {}", (spec.get)(config));
+        let _ = writeln!(text, "{indent}{leaf}: {value}");
     }
     text
 }

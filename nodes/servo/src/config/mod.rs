@@ -6,7 +6,7 @@ mod schema;
 mod tree;
 mod values;
 
-pub use document::{markdown_table, yaml_template};
+pub use document::{markdown_table, parameter_file, yaml_template};
 pub use param::{ParamError, ParamSpec, Range, Value};
 pub use schema::schema;
 use tree::Tree;
