@@ -97,6 +97,11 @@ impl BodyTracker {
         &self.world
     }
 
+    /// The two bodies of a pair.
+    pub(crate) fn bodies(&self, pair: &ActivePair) -> (&Body, &Body) {
+        (&self.parts[pair.part as usize].body, &self.pieces[pair.piece as usize])
+    }
+
     /// Forgets the past: every pair is seeded anew when it next comes near.
     pub fn reset(&mut self) {
         for part in &mut self.parts {

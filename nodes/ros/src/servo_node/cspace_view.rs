@@ -1,6 +1,6 @@
 use bag::basic_contact_to_msg;
 use bag::msg::{CFace, Header, LocalCSpace};
-use cspace::{ActivePair, BodyTracker, CFacePolygon, World, c_face_polygons};
+use cspace::{ActivePair, BodyTracker, CFacePolygon, World};
 use servo::TickRecord;
 use std::sync::Arc;
 
@@ -14,8 +14,8 @@ pub struct CSpaceView {
 impl CSpaceView {
     /// Pairs nearer than this are told, metres.
     const MARGIN: f64 = 0.005;
-    /// Outlines cost as much as there are pairs of features: beyond this many only Near is told.
-    const MOST_FACES: usize = 4000;
+    /// C-faces that are told of a pair at most, Near first: what lies beside it, whatever the size of the bodies.
+    const MOST_FACES: usize = 100;
 
     /// For a world.
     #[must_use]
@@ -25,8 +25,7 @@ impl CSpaceView {
 
     /// The neighbourhood of a tick.
     pub fn at(&mut self, tick: &TickRecord) -> LocalCSpace {
-        let world = self.tracker.world().clone();
-        let pairs = self.tracker.step(&tick.hip).to_vec();
+        self.tracker.step(&tick.hip);
         LocalCSpace {
             header: Header { stamp: tick.input.stamp.into(), frame_id: self.frame_id.clone() },
             sequence: tick.input.sequence,
@@ -34,14 +33,13 @@ impl CSpaceView {
             proxy_pose: tick.proxy.into(),
             depth: tick.depth,
             kind: tick.formation.kind as u8,
-            c_faces: pairs.iter().flat_map(|pair| faces(&world, tick, pair)).collect(),
+            c_faces: self.tracker.active().iter().flat_map(|pair| faces(&self.tracker, tick, pair)).collect(),
         }
     }
 }
 
-fn faces(world: &World, tick: &TickRecord, pair: &ActivePair) -> Vec<CFace> {
+fn faces(tracker: &BodyTracker, tick: &TickRecord, pair: &ActivePair) -> Vec<CFace> {
     let near = &pair.tracked.near;
-    let (a, b) = (&world.moving[pair.part as usize], &world.fixed[pair.piece as usize].polyhedron);
     let message = |polygon: Option<&CFacePolygon>, is_near: bool| {
         let contact = if is_near { near.contact } else { polygon.map_or(near.contact, |p| p.contacts[0]) };
         let in_contact = tick.formation.points().iter().any(|p| {
@@ -59,10 +57,7 @@ fn faces(world: &World, tick: &TickRecord, pair: &ActivePair) -> Vec<CFace> {
             outline: polygon.map_or(Vec::new(), |p| p.vertices.iter().map(|v| (*v).into()).collect()),
         }
     };
-    if a.face_count() * b.face_count() > CSpaceView::MOST_FACES {
-        return vec![message(None, true)];
-    }
-    let polygons = c_face_polygons(a, b, tick.hip.rotation);
+    let polygons = tracker.polygons_around_near(pair, &tick.hip, CSpaceView::MOST_FACES);
     let Some(home) = polygons.iter().find(|p| p.contacts.contains(&near.contact)) else {
         return vec![message(None, true)];
     };
@@ -102,5 +97,36 @@ mod tests {
         assert!(near[0].outline.iter().all(|p| (p.z - 0.06).abs() < 1e-12 && (p.x.abs() - 0.06).abs() < 1e-12));
         let far = Pose::new(DVec3::new(0.0, 0.0, 0.2), DQuat::IDENTITY);
         assert!(view.at(&TickRecord { hip: far, ..tick }).c_faces.is_empty());
+    }
+
+    /// A prism of many sides about z.
+    fn prism(sides: u32, radius: f64) -> Arc<Polyhedron> {
+        let corner = |i: u32, z: f64| {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / f64::from(sides)).sin_cos();
+            DVec3::new(radius * cos, radius * sin, z)
+        };
+        let corners: Vec<DVec3> = [-0.01, 0.01].iter().flat_map(|z| (0..sides).map(|i| corner(i, *z))).collect();
+        let mut faces: Vec<Vec<u32>> = vec![(0..sides).rev().collect(), (sides..2 * sides).collect()];
+        faces.extend((0..sides).map(|i| vec![i, (i + 1) % sides, sides + (i + 1) % sides, sides + i]));
+        Arc::new(Polyhedron::from_faces(&corners, &faces).unwrap())
+    }
+
+    #[test]
+    fn near_of_large_parts_is_told_with_a_face_beyond_each_of_its_sides() {
+        let fixed = vec![FixedPart { polyhedron: prism(300, 0.05), obstacle: 0 }];
+        let world = Arc::new(World { moving: vec![prism(200, 0.02)], fixed });
+        let mut view = CSpaceView::new(&world, "world");
+        let hip =
+            Pose::new(DVec3::new(0.0652, 0.024, 0.003), DQuat::from_rotation_x(0.1) * DQuat::from_rotation_y(-0.2));
+        let told = view.at(&TickRecord { hip, proxy: hip, ..TickRecord::default() });
+        let near = told.c_faces.iter().find(|f| f.near).unwrap();
+        assert!(near.outline.len() >= 3 && told.c_faces.len() > near.outline.len());
+        let point = |p: &bag::msg::Point| DVec3::new(p.x, p.y, p.z);
+        for (i, p) in near.outline.iter().enumerate() {
+            let ends = [point(p), point(&near.outline[(i + 1) % near.outline.len()])];
+            let has_both =
+                |f: &&CFace| !f.near && ends.iter().all(|end| f.outline.iter().any(|q| point(q).distance(*end) < 1e-9));
+            assert_eq!(told.c_faces.iter().filter(has_both).count(), 1, "side {i}");
+        }
     }
 }
