@@ -23,8 +23,9 @@ pub struct Case {
 }
 
 /// `free` hovers. `corner` pushes to the bottom and into a corner, 0.2 mm deep, so that the peg leans on two walls and the
-/// bottom. `five` does the same in a corner of five pieces, two to a wall, all of which it touches. `jammed` also turns the peg about the vertical and about an edge, farther than the hole's clearance lets it:
-/// it stands against all four walls and the bottom, five pieces at once.
+/// bottom. `five` does the same in a corner of five pieces, two to a wall: the hand is inside of all of them, and the
+/// proxy touches three to five. `jammed` also turns the peg about the vertical and about an edge, farther than the
+/// hole's clearance lets it: the proxy stands against all four walls and the bottom, five pieces at once.
 pub const CASES: [Case; 4] = [
     Case { name: "free", place: DVec3::new(0.0, 0.0, 0.03), turn: DVec3::ZERO, seated: false, hole: true },
     Case { name: "corner", place: DVec3::new(2e-4, 1.5e-4, 0.0058), turn: DVec3::ZERO, seated: true, hole: true },
