@@ -1,5 +1,5 @@
 use crate::surface::Surface;
-use cspace::{CFacePolygon, cut_out};
+use cspace::{CFacePolygon, cut_out, polygon_area};
 use glam::DVec3;
 
 /// A part of the C-obstacles' size: what is nearer than this to a surface counts as on it.
@@ -8,6 +8,9 @@ const ON_SURFACE: f64 = 1e-7;
 const COPLANAR: f64 = 1e-6;
 /// Planes that polygons are held against for one picture; what is left then is drawn whole. About 10 ms.
 const MOST_CUTS: usize = 100_000;
+
+/// Of less than this part of a C-face it cannot be told which it is.
+const HARDLY_SHOWN: f64 = 0.2;
 
 /// The C-faces of one pair.
 pub(crate) struct Obstacle<'p> {
@@ -108,9 +111,7 @@ fn draw(surface: &mut Surface, face: &CFacePolygon, cutters: &[Cutter], toleranc
         }
         cut = true;
         left = left.into_iter().flat_map(|part| cut_out(part, &heights).0).collect();
-        if !outlined {
-            edges = edges.into_iter().flat_map(|edge| cutter.outside(edge)).collect();
-        }
+        edges = edges.into_iter().flat_map(|edge| cutter.outside(edge)).collect();
         // The hole's rim, where it is neither the C-face's own nor inside another C-obstacle.
         let inner = |[from, to]: &[DVec3; 2]| {
             let middle = 0.5 * (*from + *to);
@@ -130,7 +131,12 @@ fn draw(surface: &mut Surface, face: &CFacePolygon, cutters: &[Cutter], toleranc
         return;
     }
     left.iter().for_each(|part| surface.fill(part, face.normal_w));
-    surface_lines(surface, &edges);
+    let shown: f64 = left.iter().map(|part| polygon_area(part, face.normal_w)).sum();
+    if outlined && shown < HARDLY_SHOWN * face.area() {
+        surface.line(ring.iter().chain(ring.first()));
+    } else {
+        surface_lines(surface, &edges);
+    }
 }
 
 fn surface_lines(surface: &mut Surface, edges: &[[DVec3; 2]]) {
