@@ -68,6 +68,11 @@ impl<const N: usize> Projection<N> {
         (0..self.count).map(|k| (self.active[k], self.multiplier[k]))
     }
 
+    /// `|z|^2` of the minimiser.
+    pub fn way_squared(&self) -> f64 {
+        dot(&self.z, &self.z)
+    }
+
     /// Solves anew. `rows` of 64 or fewer are all honoured; further ones are looked at, too, but may be left violated.
     pub fn solve(&mut self, rows: &[Row<N>]) {
         self.count = 0;

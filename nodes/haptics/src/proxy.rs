@@ -7,6 +7,7 @@ use crate::Gains;
 use crate::friction::Friction;
 use crate::projection::{Projection, Row};
 use crate::proxy_view::{PENETRATION, View};
+use crate::region::Placed;
 use crate::solid::Solids;
 use spatial::{DVec3, Pose, Wrench};
 
@@ -18,6 +19,10 @@ const SMALL: f64 = 1e-8;
 /// Steps on the contacts seen once they are small, at most, and the size below which they end (metres at the body's reach).
 const POLISH: usize = 3;
 const VANISHING: f64 = 1e-11;
+/// Most C-faces tried instead of others in one round.
+const TRIES: usize = 4;
+/// Another C-face is taken where the square of the way left to the hand becomes less than this part of it.
+const NEARER: f64 = 1.0 - 1e-6;
 /// Largest turn of one linearised step, radians.
 const TURN: f64 = 0.05;
 
@@ -144,6 +149,7 @@ impl Proxy {
             }
             let goal = self.goal(hip, &drag, gains);
             let mut step = self.solve(&metric, &goal);
+            step = self.choose(solids, &metric, &goal, step);
             if round == 0 && self.friction.is_on(gains) {
                 drag =
                     self.friction.drag(&self.view, &self.projection, &mut self.rows, &metric, &goal, &self.pose, gains);
@@ -236,6 +242,30 @@ impl Proxy {
         }
         self.projection.solve_again(&self.rows);
         metric.step(&self.projection.z, goal)
+    }
+
+    /// Where two C-faces of a pair meet at the proxy, the pair is free on the side of either: takes the one that lets the proxy
+    /// come nearer to the hand. Else a part that slides flat over a gap catches on the far rim by a rounding error.
+    fn choose(&mut self, solids: &Solids, metric: &Metric, goal: &Step, mut step: Step) -> Step {
+        let placed = Placed::new(&self.pose);
+        let (mut k, mut tries) = (0, 0);
+        for _ in 0..self.view.pairs.len() {
+            let of_pair = self.view.pairs[k].first..self.view.pairs[k].end;
+            let holds = tries < TRIES && self.projection.active().any(|(row, _)| of_pair.contains(&row));
+            let Some(plane) = holds.then(|| self.view.tied_plane(solids, k, &placed)).flatten() else {
+                k += 1;
+                continue;
+            };
+            tries += 1;
+            let left = self.projection.way_squared();
+            let old = self.view.replace(solids, k, &plane, true, &placed);
+            step = self.solve(metric, goal);
+            if self.projection.way_squared() > NEARER * left {
+                self.view.restore(solids, &old, &placed);
+                step = self.solve(metric, goal);
+            }
+        }
+        step
     }
 
     /// The least motion that removes the penetration left, in up to `rounds` steps.

@@ -17,6 +17,8 @@ const LEAVING: f64 = 5e-7;
 const OPEN: f64 = 1e-6;
 /// A felt plane of a piece whose nearest plane is a seam counts while it is violated by no more than this, metres.
 const BESIDE: f64 = 1e-6;
+/// C-faces of a pair whose signed distances at the proxy are within this of nought meet there, metres.
+const TIE: f64 = 1e-9;
 /// Bounds of the reach, metres.
 const SHORTEST: f64 = 2e-4;
 const LONGEST: f64 = 3e-3;
@@ -30,6 +32,10 @@ pub(crate) struct InReach {
     pub piece: u32,
     pub first: usize,
     pub end: usize,
+    /// The plane whose region is listed.
+    pub plane: CFace,
+    /// See [`Scope::near_felt`].
+    felt: bool,
 }
 
 /// Contacts seen from the proxy.
@@ -115,10 +121,10 @@ impl View {
             }
             if solids.is_felt(s.part as usize, s.piece as usize, &placed, &s.near) {
                 felt_penetration = felt_penetration.max(-s.near.distance);
-                self.list(solids, &s, &s.near, true, &placed);
+                self.list(solids, s.part, s.piece, &s.near, true, &placed);
             } else if s.near.distance > -PENETRATION && self.leans_on_open_face(solids, &s, &placed) {
                 // Only the place is a seam's: the faces there, and so the region, are the solid's own.
-                self.list(solids, &s, &s.near, false, &placed);
+                self.list(solids, s.part, s.piece, &s.near, false, &placed);
             } else {
                 self.unfelt[k] = true;
                 unfelt = true;
@@ -140,7 +146,7 @@ impl View {
             };
             // A plane far inside belongs to the other side of the solid: the pieces around push out first.
             if plane.distance >= -BESIDE || felt_penetration <= PENETRATION && s.near.distance < -PENETRATION {
-                self.list(solids, &s, &plane, true, &placed);
+                self.list(solids, s.part, s.piece, &plane, true, &placed);
             }
         }
     }
@@ -152,12 +158,37 @@ impl View {
             .is_some_and(|(_, face_b)| solids.piece(piece).face_plane(face_b).normal.dot(s.near.normal_w) > 0.9)
     }
 
-    fn list(&mut self, solids: &Solids, s: &Sensed, plane: &CFace, felt: bool, placed: &Placed) {
+    fn list(&mut self, solids: &Solids, part: u32, piece: u32, plane: &CFace, felt: bool, placed: &Placed) {
         let first = self.points.len();
-        let (part, piece) = (s.part as usize, s.piece as usize);
         let scope = Scope { reach: self.reach, near_felt: felt, wide: false, along_near: false };
-        self.clipper.region(solids, part, piece, placed, plane, &scope, &mut self.points);
-        self.pairs.push(InReach { part: s.part, piece: s.piece, first, end: self.points.len() });
+        self.clipper.region(solids, part as usize, piece as usize, placed, plane, &scope, &mut self.points);
+        self.pairs.push(InReach { part, piece, first, end: self.points.len(), plane: *plane, felt });
+    }
+
+    /// The plane of another C-face that meets the `k`-th pair's at the proxy.
+    pub fn tied_plane(&self, solids: &Solids, k: usize, placed: &Placed) -> Option<CFace> {
+        let pair = &self.pairs[k];
+        let touches = (-PENETRATION..=TIE).contains(&pair.plane.distance);
+        touches.then(|| solids.tied_plane(pair.part as usize, pair.piece as usize, placed, &pair.plane, TIE)).flatten()
+    }
+
+    /// Lists the contacts of the `k`-th pair for this plane instead, last of all; returns the pair as it was.
+    pub fn replace(&mut self, solids: &Solids, k: usize, plane: &CFace, felt: bool, placed: &Placed) -> InReach {
+        let old = self.pairs.remove(k);
+        let count = old.end - old.first;
+        self.points[old.first..].rotate_left(count);
+        self.points.truncate(self.points.len() - count);
+        for pair in self.pairs.iter_mut().filter(|p| p.first >= old.end) {
+            pair.first -= count;
+            pair.end -= count;
+        }
+        self.list(solids, old.part, old.piece, plane, felt, placed);
+        old
+    }
+
+    /// Takes back the last [`View::replace`].
+    pub fn restore(&mut self, solids: &Solids, old: &InReach, placed: &Placed) {
+        self.replace(solids, self.pairs.len() - 1, &old.plane, old.felt, placed);
     }
 
     /// Moves the contacts along with a small step to `pose`, to first order: those that so small steps can close.

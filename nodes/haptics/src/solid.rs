@@ -9,6 +9,9 @@ use cspace::{
 use spatial::DVec3;
 use std::sync::Arc;
 
+/// Cosine between normals from which on two C-faces of a pair count as one.
+const SAME: f64 = 0.999;
+
 /// The world with the seams of both sides.
 #[derive(Clone, Debug)]
 pub(crate) struct Solids {
@@ -127,6 +130,44 @@ impl Solids {
     /// Whether the pair's nearest plane is one of the uncut solids.
     pub fn is_felt(&self, part: usize, piece: usize, placed: &Placed, near: &CFace) -> bool {
         self.is_seamless(part, piece) || self.is_felt_plane(part, piece, placed, near)
+    }
+
+    /// Where `near` takes place and another C-face meets it there, within `tie` metres: the felt one, of a face at Near's features
+    /// or beside its face, that leaves most of the motion free which Near forbids. The pair is free on the side of either.
+    pub fn tied_plane(&self, part: usize, piece: usize, placed: &Placed, near: &CFace, tie: f64) -> Option<CFace> {
+        let (a, b) = (self.part(part), self.piece(piece));
+        let (center_a, center_b) = (placed.point(a.center()), placed.seen_from_a(b.center()));
+        let mut best = None;
+        let mut against = SAME;
+        let mut offer = |face: CFace| {
+            let alike = face.normal_w.dot(near.normal_w);
+            if alike < against && face.distance >= -tie && self.is_felt(part, piece, placed, &face) {
+                against = alike;
+                best = Some(face);
+            }
+        };
+        // The ball that a body holds lies on the free side, or the plane parts nothing.
+        let faces: &[FaceId] = match near.contact {
+            BasicContact::TypeA { vertex_b, .. } => b.vertex_faces(vertex_b),
+            BasicContact::TypeB { face_b, .. } => b.face_faces(face_b),
+            BasicContact::TypeC { edge_b, .. } => &b.edge(edge_b).faces,
+        };
+        for face_b in faces {
+            if b.face_plane(*face_b).signed_distance(center_a) >= a.inner_radius() - tie {
+                offer(plane_of_face_b(a, b, placed, *face_b));
+            }
+        }
+        let faces: &[FaceId] = match near.contact {
+            BasicContact::TypeA { face_a, .. } => a.face_faces(face_a),
+            BasicContact::TypeB { vertex_a, .. } => a.vertex_faces(vertex_a),
+            BasicContact::TypeC { edge_a, .. } => &a.edge(edge_a).faces,
+        };
+        for face_a in faces {
+            if a.face_plane(*face_a).signed_distance(center_b) >= b.inner_radius() - tie {
+                offer(plane_of_face_a(a, b, placed, *face_a));
+            }
+        }
+        best
     }
 
     /// Where `near` is not felt: the felt C-face with the largest signed distance among the face contacts and, around the

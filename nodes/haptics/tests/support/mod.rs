@@ -56,20 +56,22 @@ pub fn world(moving: Polyhedron, fixed: Vec<Polyhedron>) -> Arc<World> {
     Arc::new(World { moving: vec![Arc::new(moving)], fixed })
 }
 
-/// The paper's peg in a hole of five pieces: 16 x 10 in 16.25 x 10.21, 30 deep; mouth at z = 0 (mm).
+/// The paper's peg in its hole: 16 x 10 in 16.25 x 10.21, 30 deep; mouth at z = 0 (mm).
 pub fn peg_in_hole() -> Arc<World> {
+    world(block(mm(16.0, 10.0, 40.0)), hole())
+}
+
+/// The plate with the hole, of five pieces.
+pub fn hole() -> Vec<Polyhedron> {
     let (x, y) = (16.25 / 2.0, 10.21 / 2.0);
     let out = 30.0;
-    world(
-        block(mm(16.0, 10.0, 40.0)),
-        vec![
-            cuboid(mm(x, -out, -40.0), mm(out, out, 0.0)),
-            cuboid(mm(-out, -out, -40.0), mm(-x, out, 0.0)),
-            cuboid(mm(-x, y, -40.0), mm(x, out, 0.0)),
-            cuboid(mm(-x, -out, -40.0), mm(x, -y, 0.0)),
-            cuboid(mm(-x, -y, -40.0), mm(x, y, -30.0)),
-        ],
-    )
+    vec![
+        cuboid(mm(x, -out, -40.0), mm(out, out, 0.0)),
+        cuboid(mm(-out, -out, -40.0), mm(-x, out, 0.0)),
+        cuboid(mm(-x, y, -40.0), mm(x, out, 0.0)),
+        cuboid(mm(-x, -out, -40.0), mm(x, -y, 0.0)),
+        cuboid(mm(-x, -y, -40.0), mm(x, y, -30.0)),
+    ]
 }
 
 pub fn pose(x: f64, y: f64, z: f64, rx: f64, ry: f64, rz: f64) -> Pose {
