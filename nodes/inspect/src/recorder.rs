@@ -40,7 +40,7 @@ impl Default for Options {
 /// Turns tick records into a rerun recording.
 ///
 /// Every tick goes into the series, as columns of 500 rows. The 3D views and the graphs are drawn at 30 frames a second
-/// of robot time to a file and 60 to a viewer; the C-face polygons only when they changed, within a budget of 60 kB/s to
+/// of robot time to a file and 60 to a viewer; the C-face polygons only when they changed, within a budget of 45 kB/s to
 /// a file and 4 MB/s to a viewer. Changes of formation and health are never left out.
 ///
 /// Calls may block while the disk or the viewer is slow: where that must not be, use [`crate::Feed`].

@@ -47,7 +47,7 @@ impl Sink {
     /// The most bytes a second that C-face polygons may take; see `Budget`.
     pub(crate) fn polygon_bytes_per_second(&self) -> f64 {
         match self {
-            Self::File(_) => 60e3,
+            Self::File(_) => 45e3,
             Self::Viewer(_) => 4e6,
         }
     }
