@@ -57,9 +57,9 @@ pub struct Held {
 /// The account of the contact is what the hand has put in, less what the coupling still holds: it must not fall below
 /// zero. That is sharper than asking only that no net energy comes out, and makes the loss of a sampled spring, `k/2` of
 /// each step squared, visible at once: the controller adds `k (T/2 + t_d)` of damping and a fifth more, the bound of Colgate
-/// and Schenkel (1997) with the delay. Where that comes too late, as in a wall that is only a tick or two thick for a fast hand, no
-/// more is shown than what the hand has put in pays for ([`Passivity::affordable`]). A change of the stored energy that no motion made (re-seeding, other gains) stands in the account as
-/// `k/2 (f_old^2 - f_new^2)`.
+/// and Schenkel (1997) with the delay. Where that comes too late, as in a wall that is only a tick or two thick for a
+/// fast hand, no more is shown than what the hand has put in pays for ([`Passivity::affordable`]). A change of the
+/// stored energy that no motion made (re-seeding, other gains) stands in the account as `k/2 (f_old^2 - f_new^2)`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Passivity {
     account: f64,

@@ -6,9 +6,8 @@ use glam::DVec3;
 const ON_SURFACE: f64 = 1e-7;
 /// Normals that differ by less (radians) are of coplanar C-faces, if these lie on each other.
 const COPLANAR: f64 = 1e-6;
-/// Planes that polygons are held against for one picture; what is left then is drawn whole. About 10 ms.
+/// Planes that polygons are held against for one picture; what is left then is drawn whole.
 const MOST_CUTS: usize = 100_000;
-
 /// Of less than this part of a C-face it cannot be told which it is.
 const HARDLY_SHOWN: f64 = 0.2;
 
