@@ -8,6 +8,8 @@ use std::sync::Arc;
 const ON_SURFACE: f64 = 1e-7;
 /// A normal may lean this far (radians) over a flat seam and still be the normal of the uncut surface.
 const FLAT: f64 = 1e-6;
+/// A surface that falls by more than this (radians) beyond a side ends there: meshes hold their facets flat to less.
+const FALL: f64 = 1e-3;
 
 /// How much of a face lies inside other pieces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -195,8 +197,17 @@ impl Seams {
         let normal = p.face_plane(face).normal;
         let along = p.vertex(ring[(side + 1) % ring.len()]) - p.vertex(ring[side]);
         let outward = along.cross(normal).normalize_or_zero();
-        let beyond = point + (outward - normal) * (8.0 * self.tolerance);
-        self.neighbors[piece].iter().any(|&other| self.pieces[other as usize].contains(beyond, self.tolerance))
+        // Bevels are shallow, so what lies beyond is told by the planes that meet at the point, not by a point farther on.
+        let beyond = outward - normal * FALL;
+        let here = 8.0 * self.tolerance;
+        self.neighbors[piece].iter().any(|&other| {
+            let q = &self.pieces[other as usize];
+            q.faces().all(|f| {
+                let plane = q.face_plane(f);
+                let above = plane.signed_distance(point);
+                above < -here || above <= self.tolerance && plane.normal.dot(beyond) <= FLAT
+            })
+        })
     }
 
     /// Whether a contact at `point` on the surface of `piece`, with the outward `normal`, both in the pieces' frame, is one
@@ -321,6 +332,35 @@ mod tests {
                 others => assert!(normal != DVec3::Z && others.is_empty(), "{normal}: {others:?}"),
             }
         }
+    }
+
+    #[test]
+    fn a_face_ends_where_every_piece_falls_off_however_shallow_the_bevel() {
+        // A plate with a bevel of 1 : 20 around its top, given twice, and cut across into two that overlap.
+        let plate = |x: [f64; 2], rise: [f64; 2]| {
+            let ring = |x: [f64; 2], y: f64, z: f64| {
+                [(x[0], -y), (x[1], -y), (x[1], y), (x[0], y)].map(|(x, y)| DVec3::new(x, y, z))
+            };
+            let corners = [ring(x, 1.0, -0.025), ring([x[0] + rise[0], x[1] - rise[1]], 0.5, 0.0)].concat();
+            let faces = [[3, 2, 1, 0], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+            Arc::new(Polyhedron::from_faces(&corners, &faces.map(|f| f.to_vec())).expect("a plate"))
+        };
+        let whole = || plate([-1.0, 1.0], [0.5, 0.5]);
+        let twice = Seams::new(vec![whole(), whole()]);
+        let cut = Seams::new(vec![plate([-1.0, 0.2], [0.5, 0.0]), plate([0.0, 1.0], [0.0, 0.5])]);
+        let mut ends = 0;
+        for (seams, piece) in [(&twice, 0), (&twice, 1), (&cut, 0), (&cut, 1)] {
+            let p = &seams.pieces[piece];
+            let top = p.faces().find(|f| p.face_plane(*f).normal.z > 0.999).unwrap();
+            let ring = p.face_vertices(top);
+            for side in 0..ring.len() {
+                let middle = p.vertex(ring[side]).lerp(p.vertex(ring[(side + 1) % ring.len()]), 0.4);
+                let joint = middle.x.abs() < 0.3 && middle.y.abs() < 0.4;
+                assert_eq!(seams.goes_on(piece, top, side, middle), joint, "piece {piece}, {middle}");
+                ends += usize::from(!joint);
+            }
+        }
+        assert_eq!(ends, 4 + 4 + 3 + 3);
     }
 
     #[test]
