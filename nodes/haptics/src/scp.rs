@@ -16,6 +16,8 @@ pub(crate) const TIED: f64 = 1e-6;
 const FREED: f64 = 1e-9;
 /// Normals that differ by less than this, radians, are one wall's.
 const PARALLEL: f64 = 1e-12;
+/// Another plane of a pair is taken where the square of the way to the SCP becomes less than this part of it.
+const NEARER: f64 = 1.0 - 1e-6;
 /// Rounds in which planes are taken anew at the SCP found.
 const ROUNDS: usize = 12;
 /// An SCP farther than this many depths from the hand is compared with what other starts lead to.
@@ -105,6 +107,7 @@ impl Scp {
             self.last = None;
             return depth;
         }
+        self.choose(solids, placed);
         self.take_projection();
         if !self.is_plain(solids, hip, depth) {
             self.refine(solids, hip, depth);
@@ -114,6 +117,42 @@ impl Scp {
         self.touches.retain(|t| t.plane.distance + t.plane.normal_w.dot(shift) <= 4.0 * t.tie);
         self.last = Some(hip.translation + self.shift);
         depth
+    }
+
+    /// A pair is free on the side of any of its planes: of each pair that holds the SCP among others takes the plane that lets
+    /// the SCP come nearest to the hand. The nearest to the hand need not be: where the top of a wall carries together with
+    /// others, its side holds nothing back.
+    fn choose(&mut self, solids: &Solids, placed: &Placed) {
+        if self.projection.active().count() < 2 {
+            return;
+        }
+        for i in 0..self.touches.len() {
+            if !self.projection.active().any(|(k, _)| k == i) {
+                continue;
+            }
+            let t = self.touches[i];
+            let (part, piece) = (t.part as usize, t.piece as usize);
+            let (rows, projection) = (&mut self.rows, &mut self.projection);
+            let mut nearest = NEARER * projection.way_squared();
+            let (mut best, mut tried) = (t.plane, false);
+            // The SCP is no nearer than any plane's foot.
+            solids.offer_planes_beside(part, piece, placed, &t.plane, -nearest.sqrt(), |face| {
+                if solids.is_felt(part, piece, placed, &face) {
+                    tried = true;
+                    rows[i] = row(&face);
+                    projection.solve(rows);
+                    if projection.contradictions == 0 && projection.way_squared() < nearest {
+                        nearest = projection.way_squared();
+                        best = face;
+                    }
+                }
+            });
+            if tried {
+                self.touches[i].plane = best;
+                rows[i] = row(&best);
+                projection.solve(rows);
+            }
+        }
     }
 
     fn take_projection(&mut self) {

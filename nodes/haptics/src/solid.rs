@@ -135,39 +135,70 @@ impl Solids {
     /// Where `near` takes place and another C-face meets it there, within `tie` metres: the felt one, of a face at Near's features
     /// or beside its face, that leaves most of the motion free which Near forbids. The pair is free on the side of either.
     pub fn tied_plane(&self, part: usize, piece: usize, placed: &Placed, near: &CFace, tie: f64) -> Option<CFace> {
-        let (a, b) = (self.part(part), self.piece(piece));
-        let (center_a, center_b) = (placed.point(a.center()), placed.seen_from_a(b.center()));
         let mut best = None;
         let mut against = SAME;
-        let mut offer = |face: CFace| {
+        self.offer_planes_beside(part, piece, placed, near, -tie, |face| {
             let alike = face.normal_w.dot(near.normal_w);
-            if alike < against && face.distance >= -tie && self.is_felt(part, piece, placed, &face) {
+            if alike < against && self.is_felt(part, piece, placed, &face) {
                 against = alike;
                 best = Some(face);
             }
-        };
-        // The ball that a body holds lies on the free side, or the plane parts nothing.
-        let faces: &[FaceId] = match near.contact {
-            BasicContact::TypeA { vertex_b, .. } => b.vertex_faces(vertex_b),
-            BasicContact::TypeB { face_b, .. } => b.face_faces(face_b),
-            BasicContact::TypeC { edge_b, .. } => &b.edge(edge_b).faces,
-        };
-        for face_b in faces {
-            if b.face_plane(*face_b).signed_distance(center_a) >= a.inner_radius() - tie {
-                offer(plane_of_face_b(a, b, placed, *face_b));
-            }
-        }
-        let faces: &[FaceId] = match near.contact {
-            BasicContact::TypeA { face_a, .. } => a.face_faces(face_a),
-            BasicContact::TypeB { vertex_a, .. } => a.vertex_faces(vertex_a),
-            BasicContact::TypeC { edge_a, .. } => &a.edge(edge_a).faces,
-        };
-        for face_a in faces {
-            if a.face_plane(*face_a).signed_distance(center_b) >= b.inner_radius() - tie {
-                offer(plane_of_face_a(a, b, placed, *face_a));
-            }
-        }
+        });
         best
+    }
+
+    /// Offers the planes of the faces at Near's features, or beside its face, that differ from Near's and whose signed distance is
+    /// `least` (metres) or more.
+    pub fn offer_planes_beside(
+        &self,
+        part: usize,
+        piece: usize,
+        placed: &Placed,
+        near: &CFace,
+        least: f64,
+        mut offer: impl FnMut(CFace),
+    ) {
+        let (a, b) = (self.part(part), self.piece(piece));
+        let (faces_a, vertex_a, faces_b, vertex_b): (&[FaceId], _, &[FaceId], _) = match near.contact {
+            BasicContact::TypeA { face_a, vertex_b } => {
+                (a.face_faces(face_a), a.face_vertices(face_a)[0], b.vertex_faces(vertex_b), vertex_b)
+            }
+            BasicContact::TypeB { vertex_a, face_b } => {
+                (a.vertex_faces(vertex_a), vertex_a, b.face_faces(face_b), b.face_vertices(face_b)[0])
+            }
+            BasicContact::TypeC { edge_a, edge_b } => {
+                (&a.edge(edge_a).faces, a.edge(edge_a).vertices[0], &b.edge(edge_b).faces, b.edge(edge_b).vertices[0])
+            }
+        };
+        // A body lies at least as far behind a plane as any of its vertices, and as the ball that it holds.
+        let at_a = placed.point(a.vertex(vertex_a));
+        for face_b in faces_b {
+            let plane = b.face_plane(*face_b);
+            if plane.signed_distance(at_a) >= least
+                && plane.normal.dot(near.normal_w) < SAME
+                && plane.signed_distance(placed.point(a.center())) - a.inner_radius() >= least
+                && !self.is_internal_b(piece, *face_b)
+            {
+                let face = plane_of_face_b(a, b, placed, *face_b);
+                if face.distance >= least {
+                    offer(face);
+                }
+            }
+        }
+        let at_b = placed.seen_from_a(b.vertex(vertex_b));
+        for face_a in faces_a {
+            let plane = a.face_plane(*face_a);
+            if plane.signed_distance(at_b) >= least
+                && (placed.r * plane.normal).dot(near.normal_w) > -SAME
+                && plane.signed_distance(placed.seen_from_a(b.center())) - b.inner_radius() >= least
+                && !self.is_internal_a(part, *face_a)
+            {
+                let face = plane_of_face_a(a, b, placed, *face_a);
+                if face.distance >= least {
+                    offer(face);
+                }
+            }
+        }
     }
 
     /// Where `near` is not felt: the felt C-face with the largest signed distance among the face contacts and, around the

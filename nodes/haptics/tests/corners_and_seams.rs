@@ -56,22 +56,54 @@ fn peg_on_two_walls_and_the_bottom_feels_each_once() {
     }
 }
 
-/// At the far rim the top, which carries, and the side of the piece there meet at the proxy, equal but for rounding.
+/// At the far rim the top, which carries, and the side of the piece there both pass through the place of contact.
 #[test]
 fn a_block_that_slides_flat_over_a_hole_does_not_catch_on_its_rim() {
     let w = world(block(mm(16.0, 40.0, 10.0)), hole());
-    for yaw in [0.0, 0.1, 0.2, 0.3, 0.5, 0.8] {
-        let mut r = Renderer::new(w.clone());
-        for i in 0..1500 {
-            let s = f64::from(i) / 1500.0;
-            let z = 4.0 + 2.0 * (1.0 - 10.0 * s).max(0.0);
-            let hand = pose(-2.0, -20.0 + 30.0 * (s - 0.1).max(0.0), z, 0.0, 0.0, yaw);
-            let out = r.render(&hand, &gains(LawKind::Proxy), 1e-3);
-            let [x, y, z] = out.wrench.force.to_array();
-            let lift = (1e3 * (out.proxy.translation.z - hand.translation.z)).max(0.0);
-            assert!(x.hypot(y) < 1e-6 && (z - lift).abs() < 1e-6, "yaw {yaw}, tick {i}: {}", out.wrench.force);
+    for law in LAWS {
+        for yaw in [0.0, 0.1, 0.2, 0.3, 0.5, 0.8] {
+            let mut r = Renderer::new(w.clone());
+            for i in 0..1500 {
+                let hand = over_the_hole(f64::from(i) / 1500.0, yaw);
+                let out = r.render(&hand, &gains(law), 1e-3);
+                let [x, y, z] = out.wrench.force.to_array();
+                let lift = (5.0 - 1e3 * hand.translation.z).max(0.0);
+                let place = format!("{law:?}, yaw {yaw}, tick {i}: {} {}", out.wrench.force, out.wrench.torque);
+                assert!(x.hypot(y) < 1e-6 && (z - lift).abs() < 1e-6, "{place}");
+                // The block's middle stands over the plate or between its borders: nothing tips it.
+                assert!(out.wrench.torque.length() < 1e-8, "{place}");
+            }
         }
     }
+}
+
+/// The rim of the far wall stands a little above the plate: no more than this step is to be climbed.
+#[test]
+fn a_block_that_slides_flat_climbs_a_small_step_at_the_rim() {
+    let step = 1e-6;
+    let mut pieces = hole();
+    pieces[2] = cuboid(mm(-16.25 / 2.0, 10.21 / 2.0, -40.0), mm(16.25 / 2.0, 30.0, 1e3 * step));
+    let w = world(block(mm(16.0, 40.0, 10.0)), pieces);
+    for law in [LawKind::Paper, LawKind::Pstar, LawKind::Blended] {
+        for yaw in [0.0, 0.3] {
+            let mut r = Renderer::new(w.clone());
+            let mut climbed = 0;
+            for i in 0..1500 {
+                let hand = over_the_hole(f64::from(i) / 1500.0, yaw);
+                let way = r.render(&hand, &gains(law), 1e-3).proxy.translation - hand.translation;
+                let lift = 5e-3 - hand.translation.z;
+                climbed += i32::from(lift > 0.0 && (way.z - lift - step).abs() < 1e-12);
+                assert!(way.length() < lift.max(0.0) + step + 1e-12, "{law:?}, yaw {yaw}, tick {i}: {way}");
+            }
+            assert!(climbed > 400, "{law:?}, yaw {yaw}: {climbed}");
+        }
+    }
+}
+
+/// A block 10 mm high that comes down by 1 mm into the plate and slides over the hole, at `s` from 0 to 1.
+fn over_the_hole(s: f64, yaw: f64) -> Pose {
+    let z = 4.0 + 2.0 * (1.0 - 10.0 * s).max(0.0);
+    pose(-2.0, -20.0 + 30.0 * (s - 0.1).max(0.0), z, 0.0, 0.0, yaw)
 }
 
 /// The floor cut at random into `n` tiles that abut or overlap, with joints that end at other joints.
