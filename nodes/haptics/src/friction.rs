@@ -2,7 +2,7 @@
 
 use crate::Gains;
 use crate::projection::{Projection, Row};
-use crate::proxy::{Metric, Step};
+use crate::proxy::{Metric, Step, contact_rows};
 use crate::proxy_view::View;
 use spatial::{DVec3, Pose, Wrench};
 
@@ -17,6 +17,12 @@ pub struct Coefficients {
 
 /// Most places that friction holds at once.
 const HELD: usize = 4;
+/// Times that the places are held in turn, at most, and the change (N) below which they are done.
+const TURNS: usize = 4;
+const SETTLED: f64 = 1e-9;
+/// A slip (metres) that is none, and the part of a slip that may be left across it: the normals hold no better.
+const STILL: f64 = 1e-12;
+const BLOCKED: f64 = 1e-6;
 /// Force-carrying contacts with normals this close together (cosine) share one place.
 const ALIKE: f64 = 0.99;
 
@@ -53,8 +59,9 @@ impl Friction {
     /// The friction wrench on the body (N and N.m about the proxy's origin) from the frictionless solution in
     /// `projection`, whose rows stand for `view.points`.
     ///
-    /// Solves once more with the centres of pressure held; what holding them takes, cut down to the cone where it
-    /// exceeds it, is the friction. It opposes the slip by construction and so can only take energy.
+    /// Holds the centres of pressure in turn, each against what the others' friction leaves; what holding one takes, cut
+    /// down to its cone where it exceeds it, is its friction. (Held all at once, two walls may pull against each other as a
+    /// couple; each cut down on its own, such a pair would push.) The normals carry what they can first.
     #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
     pub fn drag(
         &mut self,
@@ -66,6 +73,71 @@ impl Friction {
         pose: &Pose,
         gains: &Gains,
     ) -> Wrench {
+        let places = self.places(view, projection, gains);
+        let mut forces = [DVec3::ZERO; HELD];
+        let mut drag = Wrench::ZERO;
+        let slid = self.sliding;
+        let held = || places.iter().flatten().enumerate().filter(|(_, p)| p.coefficients.statically > 0.0);
+        for _ in 0..TURNS {
+            self.sliding = false;
+            let mut change = 0.0_f64;
+            for (k, place) in held() {
+                let arm = place.point - pose.translation;
+                let others = drag - Wrench::new(forces[k], arm.cross(forces[k]));
+                let goal = metric.pulled(goal, &others);
+                contact_rows(rows, view, pose, metric, &goal);
+                let mut force = Self::hold(place, arm, rows, projection.clone(), metric, &goal);
+                let c = place.coefficients;
+                let kinetic = c.kinetically.clamp(0.0, c.statically) * place.force;
+                let limit = if slid { kinetic } else { c.statically * place.force };
+                let size = force.length();
+                if size > limit {
+                    self.sliding = true;
+                    force *= kinetic / size;
+                }
+                change = change.max(force.distance(forces[k]));
+                forces[k] = force;
+                drag = others + Wrench::new(force, arm.cross(force));
+            }
+            if change <= SETTLED || held().count() < 2 {
+                break;
+            }
+        }
+        drag
+    }
+
+    /// The force (N) that keeps the place where it is, with as much of it as possible left to the normals: they alone, then the
+    /// way it slips, then what still slips across.
+    fn hold(
+        place: &Place,
+        arm: DVec3,
+        rows: &mut Vec<Row<6>>,
+        mut solution: Projection<6>,
+        metric: &Metric,
+        goal: &Step,
+    ) -> DVec3 {
+        let first = rows.len();
+        let mut tangents = [DVec3::ZERO; 2];
+        let mut least = STILL;
+        for k in 0..2 {
+            solution.solve_again(rows);
+            let step = metric.step(&solution.z, goal);
+            let slip = (step.dp + step.dtheta.cross(arm)).reject_from_normalized(place.normal);
+            let tangent = if k == 0 { slip.normalize_or_zero() } else { place.normal.cross(tangents[0]) };
+            if slip.dot(tangent).abs() <= least || rows.len() == rows.capacity() {
+                break;
+            }
+            least += BLOCKED * slip.length();
+            tangents[k] = tangent;
+            rows.push(metric.row(tangent, arm.cross(tangent), 0.0, goal, true));
+        }
+        solution.solve_again(rows);
+        let pull = |(i, m): (usize, f64)| i.checked_sub(first).map_or(DVec3::ZERO, |k| tangents[k] * m);
+        solution.active().map(pull).sum()
+    }
+
+    /// Where the frictionless solution presses.
+    fn places(&self, view: &View, projection: &Projection<6>, gains: &Gains) -> [Option<Place>; HELD] {
         let mut places = [None::<Place>; HELD];
         for (i, force) in projection.active() {
             let Some(p) = view.points.get(i).filter(|_| force > 0.0) else { continue };
@@ -87,42 +159,6 @@ impl Friction {
                 None => {}
             }
         }
-        let first = rows.len();
-        for place in places.iter().flatten().filter(|p| p.coefficients.statically > 0.0) {
-            let arm = place.point - pose.translation;
-            let (u, v) = place.normal.any_orthonormal_pair();
-            for t in [u, v] {
-                if rows.len() < rows.capacity() {
-                    rows.push(metric.row(t, arm.cross(t), 0.0, goal, true));
-                }
-            }
-        }
-        let mut held = Projection::<6>::new();
-        held.solve(rows);
-        let mut drag = Wrench::ZERO;
-        let mut slides = false;
-        for (k, place) in places.iter().flatten().filter(|p| p.coefficients.statically > 0.0).enumerate() {
-            let (u, v) = place.normal.any_orthonormal_pair();
-            let mut force = DVec3::ZERO;
-            for (i, m) in held.active() {
-                if i == first + 2 * k {
-                    force += u * m;
-                } else if i == first + 2 * k + 1 {
-                    force += v * m;
-                }
-            }
-            let c = place.coefficients;
-            let kinetic = c.kinetically.clamp(0.0, c.statically) * place.force;
-            let limit = if self.sliding { kinetic } else { c.statically * place.force };
-            let size = force.length();
-            if size > limit {
-                slides = true;
-                force *= kinetic / size;
-            }
-            let arm = place.point - pose.translation;
-            drag = drag + Wrench::new(force, arm.cross(force));
-        }
-        self.sliding = slides;
-        drag
+        places
     }
 }

@@ -77,11 +77,28 @@ impl Metric {
         Row { normal: [n.x, n.y, n.z, m.x, m.y, m.z], offset, equality }
     }
 
+    /// Where the goal is with `wrench` (N and N.m) pulling at the body.
+    pub fn pulled(&self, goal: &Step, wrench: &Wrench) -> Step {
+        Step {
+            dp: goal.dp + wrench.force * (self.per_root_f * self.per_root_f),
+            dtheta: goal.dtheta + wrench.torque * (self.per_root_r * self.per_root_r),
+        }
+    }
+
     pub fn step(&self, z: &[f64; 6], goal: &Step) -> Step {
         Step {
             dp: goal.dp + DVec3::new(z[0], z[1], z[2]) * self.per_root_f,
             dtheta: goal.dtheta + DVec3::new(z[3], z[4], z[5]) * self.per_root_r,
         }
+    }
+}
+
+/// One row for each contact in view: it may close its gap, no more.
+pub(crate) fn contact_rows(rows: &mut Vec<Row<6>>, view: &View, pose: &Pose, metric: &Metric, goal: &Step) {
+    rows.clear();
+    for p in &view.points {
+        let arm = p.point_w - pose.translation;
+        rows.push(metric.row(p.normal_w, arm.cross(p.normal_w), -p.gap, goal, false));
     }
 }
 
@@ -147,13 +164,13 @@ impl Proxy {
             if round - cut >= ROUNDS {
                 break;
             }
-            let goal = self.goal(hip, &drag, gains);
+            let goal = self.goal(hip, &drag, &metric);
             let mut step = self.solve(&metric, &goal);
             step = self.choose(solids, &metric, &goal, step);
             if round == 0 && self.friction.is_on(gains) {
                 drag =
                     self.friction.drag(&self.view, &self.projection, &mut self.rows, &metric, &goal, &self.pose, gains);
-                let goal = self.goal(hip, &drag, gains);
+                let goal = self.goal(hip, &drag, &metric);
                 step = self.solve(&metric, &goal);
             }
             let way = step.way(lever);
@@ -170,7 +187,7 @@ impl Proxy {
             if way * scale <= SMALL {
                 self.view.shift(solids, &step, &self.pose);
                 self.stale += way * scale;
-                self.polish(solids, hip, &metric, &drag, gains, way * scale);
+                self.polish(solids, hip, &metric, &drag, way * scale);
                 break;
             }
             self.look(solids);
@@ -192,13 +209,13 @@ impl Proxy {
 
     /// Further steps on the contacts seen, which follow to first order, until the steps vanish: the linearised program turns
     /// the forces a little with every step, and what is left undone acts like friction.
-    fn polish(&mut self, solids: &Solids, hip: &Pose, metric: &Metric, drag: &Wrench, gains: &Gains, first: f64) {
+    fn polish(&mut self, solids: &Solids, hip: &Pose, metric: &Metric, drag: &Wrench, first: f64) {
         let mut last = first;
         for _ in 0..POLISH {
             if last <= VANISHING || self.stale > SMALL || self.pose == *hip {
                 return;
             }
-            let goal = self.goal(hip, drag, gains);
+            let goal = self.goal(hip, drag, metric);
             let step = self.solve(metric, &goal);
             let way = step.way(self.view.lever);
             // Steps that do not shrink lead nowhere.
@@ -227,19 +244,13 @@ impl Proxy {
     }
 
     /// Where the proxy would go if nothing were in its way: to the hand, but for the drag of friction.
-    fn goal(&self, hip: &Pose, drag: &Wrench, gains: &Gains) -> Step {
-        Step {
-            dp: hip.translation - self.pose.translation + drag.force / gains.stiffness.max(1e-6),
-            dtheta: self.pose.rotation_to(hip) + drag.torque / gains.rotation_stiffness.max(1e-9),
-        }
+    fn goal(&self, hip: &Pose, drag: &Wrench, metric: &Metric) -> Step {
+        let to_hand = Step { dp: hip.translation - self.pose.translation, dtheta: self.pose.rotation_to(hip) };
+        metric.pulled(&to_hand, drag)
     }
 
     fn solve(&mut self, metric: &Metric, goal: &Step) -> Step {
-        self.rows.clear();
-        for p in &self.view.points {
-            let arm = p.point_w - self.pose.translation;
-            self.rows.push(metric.row(p.normal_w, arm.cross(p.normal_w), -p.gap, goal, false));
-        }
+        contact_rows(&mut self.rows, &self.view, &self.pose, metric, goal);
         self.projection.solve_again(&self.rows);
         metric.step(&self.projection.z, goal)
     }

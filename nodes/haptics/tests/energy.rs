@@ -90,3 +90,31 @@ fn friction_only_takes_energy_and_holds_below_the_cone() {
     assert!(peak <= 0.5 + 1e-9 && peak > 0.495, "{peak}");
     assert!((sideways[1000] - 0.4).abs() < 1e-6, "{}", sideways[1000]);
 }
+
+#[test]
+fn friction_in_a_corner_adds_up_and_never_drives() {
+    let tau = std::f64::consts::TAU;
+    let floor = cuboid(mm(-40.0, -40.0, -20.0), mm(40.0, 40.0, 0.0));
+    let wall = cuboid(mm(15.0, -40.0, -20.0), mm(40.0, 40.0, 40.0));
+    let w = world(block(mm(10.0, 8.0, 6.0)), vec![floor, wall]);
+    let gains = Gains { friction_static: 0.3, friction_kinetic: 0.3, proxy_speed: f64::INFINITY, ..Gains::default() };
+    // 1 mm into the floor and 2 mm into the wall, pulled along both: both hold back.
+    let mut r = Renderer::new(w.clone());
+    let mut along = 0.0;
+    for i in 0..=2000 {
+        let p = pose(12.0_f64.min(9.0 + 0.01 * f64::from(i)), 0.003 * f64::from(i), 2.0, 0.0, 0.0, 0.0);
+        along = -r.render(&p, &gains, 1e-3).wrench.force.y;
+    }
+    assert!((along - 0.3 * (1.0 + 2.0)).abs() < 1e-3, "{along}");
+    // Turned against both faces, the two could hold as a couple; on the way round they only take.
+    for k in 0..8 {
+        let turn = tau * f64::from(k) / 8.0;
+        let path = |s: f64| {
+            let (c, d) = ((tau * s + turn).cos(), (tau * s).sin());
+            pose(11.0 + 0.5 * d, 0.6 * c, 2.3 + 0.3 * c, 0.01 * d, 0.015 * c, 0.02 * c)
+        };
+        let (sum, size) = work(&w, &gains, &path, 2000);
+        println!("corner, {k}: {sum:e} J of {size:e} J moved");
+        assert!(sum < -0.02 * size, "{k}: {sum:e} of {size:e}");
+    }
+}
