@@ -2,8 +2,9 @@
 
 use crate::facing::lone_contact;
 use crate::paper_torque::torque;
+use crate::placed::Placed;
 use crate::reduced_hull::nearest_point;
-use crate::region::{Clipper, Placed, RegionPoint, Scope};
+use crate::region::{Clipper, RegionPoint, Scope};
 use crate::scp::{Scp, TIED, Touch};
 use crate::sense::Sensed;
 use crate::shares::Shares;
@@ -118,22 +119,10 @@ impl DepthLaw {
             if let Some(lone) = lone_contact(solids.part(part), solids.piece(piece), placed, &t.plane, within) {
                 self.points.push(lone);
             } else {
-                let scope =
-                    Scope { reach: f64::INFINITY, near_felt: true, wide: law == LawKind::Blended, along_near: true };
+                // Along Near's normal no contact can be deeper than Near.
+                let scope = Scope { reach: limit, near_felt: true, wide: law == LawKind::Blended, along_near: true };
                 self.clipper.region(solids, part, piece, placed, &t.plane, &scope, &mut self.points);
             }
-            // How deep each contact is under Near's plane: along Near's normal none can be deeper than Near.
-            let normal = t.plane.normal_w;
-            let mut kept = t.first;
-            for k in t.first..self.points.len() {
-                let mut p = self.points[k];
-                p.gap = normal.dot(p.span_w);
-                if p.gap <= limit {
-                    self.points[kept] = p;
-                    kept += 1;
-                }
-            }
-            self.points.truncate(kept);
             t.end = self.points.len();
             self.places.clear();
             self.places.extend(self.points[t.first..t.end].iter().map(|p| p.point_w));
@@ -162,15 +151,10 @@ impl DepthLaw {
         if law != LawKind::Blended || pairs.len() < 2 {
             return;
         }
-        let scope = Scope { reach: f64::INFINITY, near_felt: false, wide: true, along_near: true };
+        let reach = t.plane.distance + gains.blend_depth.max(t.tie);
+        let scope = Scope { reach, near_felt: false, wide: true, along_near: true };
         let of_pair = (t.part as usize, t.piece as usize);
         self.clipper.beside(solids, pairs, of_pair, placed, &t.plane, &scope, 0, &mut self.beside);
-        let limit = t.plane.distance + gains.blend_depth.max(t.tie);
-        let normal = t.plane.normal_w;
-        self.beside.retain_mut(|p| {
-            p.gap = normal.dot(p.span_w);
-            p.gap <= limit
-        });
     }
 
     /// The torque of the force share that plane `i` carries, over the contacts of all pairs with an equal plane.

@@ -5,6 +5,7 @@
 
 mod coupling;
 mod depth_law;
+mod face_pair;
 mod facing;
 mod formation;
 mod friction;
@@ -13,6 +14,7 @@ mod law;
 mod limiter;
 mod paper_torque;
 mod passivity;
+mod placed;
 mod projection;
 mod proxy;
 mod proxy_view;

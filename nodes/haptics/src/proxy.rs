@@ -5,9 +5,9 @@
 
 use crate::Gains;
 use crate::friction::Friction;
+use crate::placed::Placed;
 use crate::projection::{Projection, Row};
 use crate::proxy_view::{PENETRATION, View};
-use crate::region::Placed;
 use crate::solid::Solids;
 use spatial::{DVec3, Pose, Wrench};
 

@@ -1,10 +1,11 @@
 //! What the proxy sees around it: the contacts of all pairs in reach, and how deep it penetrates.
 
 use crate::formation::{ContactFormation, ContactPoint, FormationKind};
+use crate::placed::Placed;
 use crate::proxy::Step;
-use crate::region::{Clipper, Placed, RegionPoint, Scope, most_parallel};
+use crate::region::{Clipper, RegionPoint, Scope, most_parallel};
 use crate::sense::{Sense, Sensed};
-use crate::solid::Solids;
+use crate::solid::{Covered, Solids};
 use cspace::{BasicContact, CFace};
 use spatial::{DVec3, Pose};
 
@@ -119,7 +120,7 @@ impl View {
             if s.near.distance > self.reach {
                 continue;
             }
-            if solids.is_felt(s.part as usize, s.piece as usize, &placed, &s.near) {
+            if solids.is_felt(s.part as usize, s.piece as usize, &placed, &s.near, Covered::Unfelt) {
                 felt_penetration = felt_penetration.max(-s.near.distance);
                 self.list(solids, s.part, s.piece, &s.near, true, &placed);
             } else if s.near.distance > -PENETRATION && self.leans_on_open_face(solids, &s, &placed) {
@@ -139,9 +140,14 @@ impl View {
             if !self.unfelt[k] {
                 continue;
             }
-            let Some(plane) =
-                solids.felt_plane(part, piece, &placed, &s.near, &mut self.hints[part * self.pieces + piece])
-            else {
+            let Some(plane) = solids.felt_plane(
+                part,
+                piece,
+                &placed,
+                &s.near,
+                Covered::Unfelt,
+                &mut self.hints[part * self.pieces + piece],
+            ) else {
                 continue;
             };
             // A plane far inside belongs to the other side of the solid: the pieces around push out first.

@@ -1,10 +1,12 @@
 //! The contact region of a pair: the two faces in contact, clipped against each other, as basic contacts.
 
+use crate::face_pair::{Corner, FacePair, PARALLEL_EDGES};
 use crate::facing::facing_point;
+use crate::placed::Placed;
 use crate::sense::Sensed;
 use crate::solid::Solids;
-use cspace::{BasicContact, CFace, EdgeId, FaceId, Polyhedron, World};
-use spatial::{DMat3, DVec3, Pose};
+use cspace::{BasicContact, CFace, FaceId, Polyhedron, World};
+use spatial::{DMat3, DVec3};
 
 /// A basic contact of the region: one of the paper's K contacts when it takes place, a potential one when it has a gap.
 #[derive(Clone, Copy, Debug)]
@@ -14,10 +16,8 @@ pub(crate) struct RegionPoint {
     pub point_w: DVec3,
     /// Unit, axes of W, from B to A.
     pub normal_w: DVec3,
-    /// Signed distance of A to B at this contact along the normal, metres; `< 0` is penetration.
+    /// Signed distance of A to B at this contact, metres, `< 0` is penetration: along the normal, or along Near's: see [`Scope`].
     pub gap: f64,
-    /// From `point_w` to A's point of the contact, metres, axes of W.
-    pub span_w: DVec3,
 }
 
 impl RegionPoint {
@@ -35,51 +35,17 @@ impl RegionPoint {
     }
 }
 
-/// The pose of A in the form the geometry wants.
+/// The end of what lies over B's face of an edge of A: how far along the edge, 0 to 1, and the side of B's face that cuts it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed {
-    pub x: DVec3,
-    pub r: DMat3,
-}
-
-impl Placed {
-    pub fn new(pose: &Pose) -> Self {
-        Self { x: pose.translation, r: pose.rotation_matrix() }
-    }
-
-    /// The same orientation, moved by `by`, axes of W.
-    pub fn shifted(&self, by: DVec3) -> Self {
-        Self { x: self.x + by, r: self.r }
-    }
-
-    pub fn point(&self, p: DVec3) -> DVec3 {
-        self.x + self.r * p
-    }
-
-    /// A point of W as A sees it.
-    pub fn seen_from_a(&self, p: DVec3) -> DVec3 {
-        self.r.transpose() * (p - self.x)
-    }
-}
-
-/// Where an edge of the clipped polygon comes from: position in the ring of A's or of B's face.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Side {
-    A(u16),
-    B(u16),
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Corner {
-    point: DVec3,
-    /// The origin of the edge that leaves this corner.
-    leaving: Side,
+struct End {
+    at: f64,
+    side: Option<usize>,
 }
 
 /// Which contacts of a region are wanted, and seen in which direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scope {
-    /// Contacts with a gap of up to this, metres.
+    /// Contacts with a gap of up to this, metres: along their own normals, or along Near's if seen along it.
     pub reach: f64,
     /// Near's own contact, at its exact place.
     pub near_felt: bool,
@@ -93,10 +59,11 @@ pub(crate) struct Scope {
 /// Scratch for clipping; grows at construction only.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Clipper {
-    subject: Vec<Corner>,
-    result: Vec<Corner>,
-    /// How far each corner of the subject lies beyond the side in hand, metres.
-    beyond: Vec<f64>,
+    /// The sides of B's face as planes along the sight: outward normal, not of unit length, and offset.
+    sides: Vec<(DVec3, f64)>,
+    /// How far the two vertices of the edge in hand lie beyond each side.
+    from: Vec<f64>,
+    to: Vec<f64>,
     pairs: Vec<(FaceId, FaceId)>,
 }
 
@@ -105,21 +72,16 @@ const SAME_POINT: f64 = 1e-8;
 /// Most pairs of faces clipped for one contact, and the cosine up to which they count as facing each other.
 const MAX_PAIRS: usize = 8;
 const FACING: f64 = -0.5;
-/// Edges that cross at less than this angle (radians) have no reliable common normal: the face's is used.
-const PARALLEL_EDGES: f64 = 0.02;
 
 impl Clipper {
     /// Room for the largest faces of the world.
     pub fn for_world(world: &World) -> Self {
         let most = |p: &Polyhedron| p.faces().map(|f| p.face_vertices(f).len()).max().unwrap_or(0);
-        let a = world.moving.iter().map(|p| most(p)).max().unwrap_or(0);
-        let b = world.fixed.iter().map(|p| most(&p.polyhedron)).max().unwrap_or(0);
-        // A convex polygon gains at most one corner per clipping line; rounding is allowed as much again.
-        let room = 2 * (a + b) + 8;
+        let room = world.fixed.iter().map(|p| most(&p.polyhedron)).max().unwrap_or(0);
         Self {
-            subject: Vec::with_capacity(room),
-            result: Vec::with_capacity(room),
-            beyond: Vec::with_capacity(room),
+            sides: Vec::with_capacity(room),
+            from: Vec::with_capacity(room),
+            to: Vec::with_capacity(room),
             pairs: Vec::with_capacity(MAX_PAIRS),
         }
     }
@@ -145,7 +107,7 @@ impl Clipper {
         let own = if scope.near_felt { facing_point(a, b, placed, near, 1e3 * same) } else { None };
         if let Some(point_w) = own.filter(|_| near.distance <= scope.reach) {
             let (gap, normal_w) = (near.distance, near.normal_w);
-            let own = RegionPoint { contact: near.contact, point_w, normal_w, gap, span_w: normal_w * gap };
+            let own = RegionPoint { contact: near.contact, point_w, normal_w, gap };
             push(own, same, [first; 2], out);
         }
         self.pairs.clear();
@@ -156,7 +118,7 @@ impl Clipper {
         }
         for k in 0..self.pairs.len() {
             let (face_a, face_b) = self.pairs[k];
-            self.faces(solids, part, piece, placed, near, own.is_some(), (face_a, face_b), scope, first, out);
+            self.faces(solids, (part, piece), placed, near, own.is_some(), (face_a, face_b), scope, first, out);
         }
     }
 
@@ -185,158 +147,109 @@ impl Clipper {
                 let (face_a, face_b) = self.pairs[k];
                 let faces = solids.flush_a(part, face_a, other_a).zip(solids.flush_b(piece, face_b, other_b));
                 if let Some(faces) = faces {
-                    self.faces(solids, other_a, other_b, placed, near, false, faces, scope, first, out);
+                    self.faces(solids, (other_a, other_b), placed, near, false, faces, scope, first, out);
                 }
             }
         }
     }
 
-    /// Appends the contacts between one face of each body.
-    #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
+    /// Appends the contacts between one face of each body: the corners of the region in which they lie over each other.
+    #[expect(clippy::too_many_arguments, reason = "two call sites; a struct would only rename them")]
     fn faces(
         &mut self,
         solids: &Solids,
-        part: usize,
-        piece: usize,
+        of_pair: (usize, usize),
         placed: &Placed,
         near: &CFace,
         own: bool,
-        (face_a, face_b): (FaceId, FaceId),
+        faces: (FaceId, FaceId),
         scope: &Scope,
         first: usize,
         out: &mut Vec<RegionPoint>,
     ) {
-        let (a, b) = (solids.part(part), solids.piece(piece));
-        let same = SAME_POINT * (a.size() + b.size());
-        let plane_b = b.face_plane(face_b);
-        let normal_a = -(placed.r * a.face_plane(face_a).normal);
-        let lean = normal_a.dot(plane_b.normal);
-        let along = if scope.along_near { near.normal_w } else { plane_b.normal };
-        let slope = along.dot(plane_b.normal);
-        if lean > 0.1 && slope > 0.1 && along.dot(normal_a) > 0.1 {
-            self.clip(a, face_a, b, face_b, placed, along, same);
-            let ring = out.len();
-            let ring_a = (a.face_vertices(face_a), a.face_edges(face_a));
-            let ring_b = (b.face_vertices(face_b), b.face_edges(face_b));
-            let mut last = self.subject.last().map_or(Side::A(0), |c| c.leaving);
-            for &Corner { point, leaving } in &self.subject {
-                let before = std::mem::replace(&mut last, leaving);
-                // Weighted by their depths, the ends of a cut in A's face would count as contacts.
-                let cut = |s: &Side| match s {
-                    Side::A(i) => solids.goes_on_a(part, face_a, *i as usize, point, placed),
-                    Side::B(_) => false,
-                };
-                if scope.wide && (cut(&before) || cut(&leaving)) {
-                    continue;
-                }
-                let height = plane_b.signed_distance(point);
-                if height * lean > scope.reach && height > scope.reach {
-                    continue;
-                }
-                let span_w = along * (height / slope);
-                let foot = point - span_w;
-                let found = match (before, leaving) {
-                    (Side::A(_), Side::A(i)) => RegionPoint {
-                        contact: BasicContact::TypeB { vertex_a: ring_a.0[i as usize], face_b },
-                        point_w: foot,
-                        normal_w: plane_b.normal,
-                        gap: height,
-                        span_w,
-                    },
-                    (Side::B(i), Side::B(j)) => {
-                        // The corner that the two sides share; A's ring runs against B's, so they come in either order.
-                        let n = ring_b.0.len();
-                        let (i, j) = (i as usize, j as usize);
-                        let corner = if i + 1 == j || i + 1 == n && j == 0 { j } else { i };
-                        let at = b.vertex(ring_b.0[corner]);
-                        if i == j || [i, j].iter().any(|s| solids.goes_on_b(piece, face_b, *s, at)) {
-                            continue;
-                        }
-                        RegionPoint {
-                            contact: BasicContact::TypeA { face_a, vertex_b: ring_b.0[corner] },
-                            point_w: at,
-                            normal_w: normal_a,
-                            gap: height * lean,
-                            span_w,
-                        }
-                    }
-                    (Side::A(i), Side::B(j)) | (Side::B(j), Side::A(i)) => {
-                        if solids.goes_on_b(piece, face_b, j as usize, foot) {
-                            continue;
-                        }
-                        let (edge_a, edge_b) = (ring_a.1[i as usize], ring_b.1[j as usize]);
-                        let (normal_w, gap) = crossing(a, edge_a, b, edge_b, &placed.r, plane_b.normal, height);
-                        RegionPoint {
-                            contact: BasicContact::TypeC { edge_a, edge_b },
-                            point_w: foot,
-                            normal_w,
-                            gap,
-                            span_w,
-                        }
-                    }
-                };
-                if found.gap <= scope.reach && (!own || found.contact != near.contact) {
-                    push(found, same, [first, ring], out);
-                }
+        let Some(pair) = FacePair::new(solids, of_pair, faces, placed, near.normal_w, scope) else { return };
+        let same = SAME_POINT * (pair.a.size() + pair.b.size());
+        let ring = out.len();
+        let mut add = |corner: Corner, point: DVec3| {
+            let found = pair.contact(solids, corner, point).filter(|p| !own || p.contact != near.contact);
+            if let Some(found) = found {
+                push(found, same, [first, ring], out);
             }
+        };
+        self.edges_of_a(&pair, placed, same, &mut add);
+        for (corner, point) in pair.vertices_of_b(same) {
+            add(corner, point);
         }
     }
 
-    /// A's face, cut by the sides of B's face (Sutherland and Hodgman 1974) seen in the direction `sight`; left in `subject`.
-    /// The corners lie on A's face.
-    #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
-    fn clip(
-        &mut self,
-        a: &Polyhedron,
-        face_a: FaceId,
-        b: &Polyhedron,
-        face_b: FaceId,
-        placed: &Placed,
-        sight: DVec3,
-        same: f64,
-    ) {
-        self.subject.clear();
-        for (i, v) in a.face_vertices(face_a).iter().enumerate() {
-            self.subject.push(Corner { point: placed.point(a.vertex(*v)), leaving: Side::A(i as u16) });
-        }
-        let plane_b = b.face_plane(face_b);
-        let upright = plane_b.normal.dot(sight);
-        for (j, side) in b.face_sides(face_b).iter().enumerate() {
-            // The plane through the same edge and along the sight.
-            let lean = side.normal.dot(sight);
-            let outward = side.normal * upright - plane_b.normal * lean;
-            let offset = side.distance * upright - plane_b.distance * lean + same;
-            self.beyond.clear();
-            self.beyond.extend(self.subject.iter().map(|c| outward.dot(c.point) - offset));
-            if self.beyond.iter().all(|h| *h <= 0.0) {
-                continue;
-            }
-            self.result.clear();
-            for k in 0..self.subject.len() {
-                let next = if k + 1 < self.subject.len() { k + 1 } else { 0 };
-                let (p, q) = (self.subject[k], self.subject[next]);
-                let (hp, hq) = (self.beyond[k], self.beyond[next]);
-                // Where the side's own line is crossed, which lies `same` within what still counts as inside.
-                let cut = || p.point + (q.point - p.point) * ((hp + same) / (hp - hq)).clamp(0.0, 1.0);
-                if self.result.len() + 2 > self.result.capacity() {
-                    break;
+    /// Gives `add` the vertices of A's face that lie over B's face, and where A's edges cross B's: A's edges are cut by the sides
+    /// of B's face (Cyrus and Beck 1978).
+    fn edges_of_a(&mut self, pair: &FacePair<'_>, placed: &Placed, same: f64, add: &mut impl FnMut(Corner, DVec3)) {
+        self.sides.clear();
+        self.sides.extend(pair.sides_of_b().map(|(outward, offset)| (outward, offset + same)));
+        let beyond = |sides: &[(DVec3, f64)], p: DVec3, out: &mut Vec<f64>| {
+            out.clear();
+            out.extend(sides.iter().map(|(outward, offset)| outward.dot(p) - offset));
+        };
+        let ring = pair.ring_a();
+        let start = placed.point(pair.a.vertex(ring[0]));
+        let (mut p, mut height) = (start, pair.height(start));
+        // Whether `from` holds for `p`.
+        let mut known = false;
+        for i in 0..ring.len() {
+            let q = ring.get(i + 1).map_or(start, |v| placed.point(pair.a.vertex(*v)));
+            let next_height = pair.height(q);
+            let counts = height.min(next_height) <= pair.highest;
+            if counts {
+                if !known {
+                    beyond(&self.sides, p, &mut self.from);
                 }
-                match (hp <= 0.0, hq <= 0.0) {
-                    (true, true) => self.result.push(p),
-                    (true, false) => {
-                        self.result.push(p);
-                        self.result.push(Corner { point: cut(), leaving: Side::B(j as u16) });
+                beyond(&self.sides, q, &mut self.to);
+                if let Some([enter, leave]) = inside(&self.from, &self.to, same) {
+                    match enter.side {
+                        None => add(Corner::OfA(i), p),
+                        Some(j) => add(Corner::Crossing(i, j), p.lerp(q, enter.at)),
                     }
-                    (false, true) => self.result.push(Corner { point: cut(), leaving: p.leaving }),
-                    (false, false) => {}
+                    if let Some(j) = leave.side {
+                        add(Corner::Crossing(i, j), p.lerp(q, leave.at));
+                    }
                 }
+                std::mem::swap(&mut self.from, &mut self.to);
             }
-            std::mem::swap(&mut self.subject, &mut self.result);
-            if self.subject.is_empty() {
-                return;
-            }
+            (p, height, known) = (q, next_height, counts);
         }
     }
+}
+
+/// The part of an edge within all sides, from how far its ends lie beyond each, `same` included: none if there is none.
+fn inside(from: &[f64], to: &[f64], same: f64) -> Option<[End; 2]> {
+    let mut enter = End { at: 0.0, side: None };
+    let mut leave = End { at: 1.0, side: None };
+    for (j, (p, q)) in from.iter().zip(to).enumerate() {
+        if *p <= 0.0 && *q <= 0.0 {
+            continue;
+        }
+        if *p > 0.0 && *q > 0.0 {
+            return None;
+        }
+        let at = p / (p - q);
+        if *p > 0.0 {
+            if at > enter.at || enter.side.is_none() {
+                enter = End { at, side: Some(j) };
+            }
+        } else if at < leave.at || leave.side.is_none() {
+            leave = End { at, side: Some(j) };
+        }
+    }
+    if enter.at > leave.at {
+        return None;
+    }
+    // Where the side's own line is crossed, which lies `same` within what still counts as inside.
+    let exact = |end: End| match end.side {
+        Some(j) => End { at: ((from[j] + same) / (from[j] - to[j])).clamp(0.0, 1.0), ..end },
+        None => end,
+    };
+    Some([exact(enter), exact(leave)])
 }
 
 /// Keeps a contact unless it is a duplicate of one from `first` on or there is no room; of two at one place the first stays.
@@ -413,26 +326,4 @@ fn for_each_pair(
             each(b.face_plane(*j).normal.dot(normal), (*i, *j));
         }
     }
-}
-
-/// Normal and gap of two crossing edges whose vertical distance above B's face is `height`.
-fn crossing(
-    a: &Polyhedron,
-    edge_a: EdgeId,
-    b: &Polyhedron,
-    edge_b: EdgeId,
-    r: &DMat3,
-    normal_b: DVec3,
-    height: f64,
-) -> (DVec3, f64) {
-    let n = (*r * a.edge_direction(edge_a)).cross(b.edge_direction(edge_b));
-    let length = n.length();
-    if length <= PARALLEL_EDGES {
-        return (normal_b, height);
-    }
-    let lean = n.dot(normal_b) / length;
-    if lean.abs() < 0.1 {
-        return (normal_b, height);
-    }
-    (n * (lean.signum() / length), height * lean.abs())
 }

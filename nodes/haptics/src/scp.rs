@@ -1,12 +1,15 @@
 //! The surface contact point: the nearest touching configuration to the hand's at its orientation, one or more obstacles.
 
+mod hold;
+
 use crate::facing::facing_point;
+use crate::placed::Placed;
 use crate::projection::{Projection, Row};
-use crate::region::Placed;
 use crate::renderer::SCP_MARGIN;
 use crate::sense::{Sense, Sensed};
-use crate::solid::Solids;
+use crate::solid::{Covered, Solids};
 use cspace::{BasicContact, CFace};
+use hold::Held;
 use spatial::{DVec3, Pose};
 
 /// Contacts whose depths differ by less than this part of the moving part's size take place together; half as much again keeps
@@ -62,6 +65,9 @@ pub(crate) struct Scp {
     around: Sense,
     /// The last SCP.
     last: Option<DVec3>,
+    held: Option<Held>,
+    /// Farthest point of A from its origin, metres.
+    lever: f64,
 }
 
 impl Scp {
@@ -80,11 +86,14 @@ impl Scp {
             pieces: world.fixed.len(),
             around: Sense::new(world.clone(), BESIDE * size),
             last: None,
+            held: None,
+            lever: world.moving.iter().flat_map(|p| p.corner_ids().map(|v| p.vertex(v).length())).fold(0.0, f64::max),
         }
     }
 
     pub fn reset(&mut self) {
         self.last = None;
+        self.held = None;
         self.hints.fill(None);
         self.around.reset();
     }
@@ -97,20 +106,19 @@ impl Scp {
     /// The penetration of the hand's pose, metres, `>= 0`: the largest over the planes that count.
     pub fn depth(&mut self, solids: &Solids, pairs: &[Sensed], placed: &Placed) -> f64 {
         self.last = None;
+        self.held = None;
         self.project(solids, pairs, placed, true)
     }
 
     /// Finds the SCP and the planes that hold it, in `touches`; returns the depth as [`Scp::depth`] does.
     pub fn find(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
-        let depth = self.project(solids, pairs, placed, false);
+        let depth = match self.hold(solids, pairs, hip, placed) {
+            Some(depth) => depth,
+            None => self.search(solids, pairs, hip, placed),
+        };
         if depth <= 0.0 {
             self.last = None;
             return depth;
-        }
-        self.choose(solids, placed);
-        self.take_projection();
-        if !self.is_plain(solids, hip, depth) {
-            self.refine(solids, hip, depth);
         }
         // What the others push free of is no contact at the SCP; planes equal to one that pushes are.
         let shift = self.shift;
@@ -137,7 +145,7 @@ impl Scp {
             let (mut best, mut tried) = (t.plane, false);
             // The SCP is no nearer than any plane's foot.
             solids.offer_planes_beside(part, piece, placed, &t.plane, -nearest.sqrt(), |face| {
-                if solids.is_felt(part, piece, placed, &face) {
+                if solids.is_felt(part, piece, placed, &face, Covered::Unfelt) {
                     tried = true;
                     rows[i] = row(&face);
                     projection.solve(rows);
@@ -155,6 +163,20 @@ impl Scp {
         }
     }
 
+    /// From the planes near the hand to the SCP and the planes that hold it.
+    fn search(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
+        let depth = self.project(solids, pairs, placed, false);
+        if depth > 0.0 {
+            self.choose(solids, placed);
+            self.take_projection();
+            let found = self.is_plain(solids, placed, depth) || self.refine(solids, hip, depth);
+            if found {
+                self.begin_to_hold(solids, pairs, hip, placed, depth);
+            }
+        }
+        depth
+    }
+
     fn take_projection(&mut self) {
         self.shift = DVec3::from_array(self.projection.z);
         for t in &mut self.touches {
@@ -167,7 +189,7 @@ impl Scp {
 
     /// Whether the SCP is known to touch and to be free without a look around: its planes' features face each other there, and
     /// all pairs that it could reach were among the constraints.
-    fn is_plain(&self, solids: &Solids, hip: &Pose, depth: f64) -> bool {
+    fn is_plain(&self, solids: &Solids, placed: &Placed, depth: f64) -> bool {
         let way = self.shift.length();
         if self.projection.contradictions > 0 || way > SCP_MARGIN || way > 2.0 * depth {
             return false;
@@ -177,19 +199,27 @@ impl Scp {
             // The foot on the nearest plane of a pair that is penetrated lies on its C-face.
             return one.plane.distance < 0.0;
         }
-        let placed = Placed::new(&Pose::new(hip.translation + self.shift, hip.rotation));
-        let touches_there = |t: &Touch| {
-            let (a, b) = (solids.part(t.part as usize), solids.piece(t.piece as usize));
-            let there = CFace { distance: 0.0, ..t.plane };
-            facing_point(a, b, &placed, &there, FREED).is_some()
+        self.takes_place(solids, &placed.shifted(self.shift))
+    }
+
+    /// Whether the planes that push have contacts that take place at the SCP.
+    fn takes_place(&self, solids: &Solids, scp: &Placed) -> bool {
+        let touches_there = |part: u32, piece: u32, plane: &CFace| {
+            let (a, b) = (solids.part(part as usize), solids.piece(piece as usize));
+            facing_point(a, b, scp, &CFace { distance: 0.0, ..*plane }, FREED).is_some()
         };
         // Of the pieces that one wall is cut into, any may carry the force, and any other be touched.
         let same_wall = |t: &Touch, u: &Touch| {
             (t.plane.distance - u.plane.distance).abs() <= FREED
                 && t.plane.normal_w.distance_squared(u.plane.normal_w) <= PARALLEL * PARALLEL
         };
-        let touched = |t: &Touch| touches_there(t) || self.touches.iter().any(|u| same_wall(t, u) && touches_there(u));
-        self.touches.iter().filter(|t| t.push > 0.0).all(touched)
+        self.touches.iter().filter(|t| t.push > 0.0).all(|t| {
+            touches_there(t.part, t.piece, &t.plane)
+                || self.touches.iter().any(|u| same_wall(t, u) && touches_there(u.part, u.piece, &u.plane))
+                || solids
+                    .flush_contacts(t.part, t.piece, t.plane.contact)
+                    .any(|(part, piece, contact)| touches_there(part, piece, &CFace { contact, ..t.plane }))
+        })
     }
 
     /// Projection on the planes near the hand; returns the depth. Leaves planes in `touches` and, unless the depth alone is
@@ -207,7 +237,7 @@ impl Scp {
             if s.near.distance > 2.0 * deepest {
                 continue;
             }
-            if solids.is_felt(s.part as usize, s.piece as usize, placed, &s.near) {
+            if solids.is_felt(s.part as usize, s.piece as usize, placed, &s.near, Covered::Unfelt) {
                 self.touch(solids, s.part, s.piece, s.near);
             } else if s.near.distance < 0.0 {
                 self.unfelt.push(*s);
@@ -236,9 +266,14 @@ impl Scp {
             if freed(&s.near) {
                 continue;
             }
-            if let Some(plane) =
-                solids.felt_plane(part, piece, placed, &s.near, &mut self.hints[part * self.pieces + piece])
-            {
+            if let Some(plane) = solids.felt_plane(
+                part,
+                piece,
+                placed,
+                &s.near,
+                Covered::Felt,
+                &mut self.hints[part * self.pieces + piece],
+            ) {
                 // An equal plane adds nothing to the force, but its contacts belong to the region.
                 let again = !freed(&plane);
                 // Near may be a joint that the way out runs along; then the plane of any face is proof as well.
@@ -254,14 +289,13 @@ impl Scp {
     }
 
     fn touch(&mut self, solids: &Solids, part: u32, piece: u32, plane: CFace) {
-        let tie = 2.0 * solids.part(part as usize).size() * TIED;
-        self.touches.push(Touch { part, piece, plane, first: 0, end: 0, tie, push: 0.0 });
+        self.touches.push(Touch { part, piece, plane, first: 0, end: 0, tie: tie_of(solids, part), push: 0.0 });
         self.rows.push(row(&plane));
     }
 
     /// The nearest touching configuration that a few starts lead to: the projection itself, the last SCP, and the foot on each
-    /// pair's plane alone. If none does, the deepest pair's foot: the parts are wedged at this orientation.
-    fn refine(&mut self, solids: &Solids, hip: &Pose, depth: f64) {
+    /// pair's plane alone. If none does, the deepest pair's foot, and false: the parts are wedged at this orientation.
+    fn refine(&mut self, solids: &Solids, hip: &Pose, depth: f64) -> bool {
         let mut starts = [DVec3::ZERO; STARTS];
         let mut count = 0;
         let last = self.last.map(|p| p - hip.translation);
@@ -293,6 +327,7 @@ impl Scp {
         }
         std::mem::swap(&mut self.touches, &mut self.best);
         self.shift = self.touches.iter().map(|t| t.plane.normal_w * t.push).sum();
+        least < f64::INFINITY
     }
 
     fn keep(&mut self, least: &mut f64) {
@@ -345,11 +380,18 @@ impl Scp {
                 continue;
             }
             let (part, piece) = (s.part as usize, s.piece as usize);
-            let felt = solids.is_felt(part, piece, &placed, &s.near);
+            let felt = solids.is_felt(part, piece, &placed, &s.near, Covered::Unfelt);
             let plane = if felt {
                 Some(s.near)
             } else {
-                solids.felt_plane(part, piece, &placed, &s.near, &mut self.hints[part * self.pieces + piece])
+                solids.felt_plane(
+                    part,
+                    piece,
+                    &placed,
+                    &s.near,
+                    Covered::Felt,
+                    &mut self.hints[part * self.pieces + piece],
+                )
             };
             let plane = plane.map(|c| CFace { distance: c.distance - c.normal_w.dot(self.shift), ..c });
             match (known, plane) {
@@ -376,4 +418,9 @@ impl Scp {
 
 fn row(plane: &CFace) -> Row<3> {
     Row { normal: plane.normal_w.to_array(), offset: -plane.distance, equality: false }
+}
+
+/// Contacts of the part that lie this close together take place together, metres.
+fn tie_of(solids: &Solids, part: u32) -> f64 {
+    2.0 * solids.part(part as usize).size() * TIED
 }

@@ -1,6 +1,6 @@
 //! The two assemblies in contact, with their seams: which contact planes of a pair may be felt.
 
-use crate::region::Placed;
+use crate::placed::Placed;
 use crate::seams::{Cover, Seams};
 use cspace::{
     BasicContact, CFace, Edge, EdgeId, FaceId, Plane, Polyhedron, VertexId, World, contact_point_turned,
@@ -11,6 +11,17 @@ use std::sync::Arc;
 
 /// Cosine between normals from which on two C-faces of a pair count as one.
 const SAME: f64 = 0.999;
+/// What the cosine between the normals of one face may lack of one.
+const SAME_NORMAL: f64 = 1e-12;
+
+/// Whether a face that other pieces cover in part is felt where they do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Covered {
+    /// Not where both the contact and A's middle stand over covered parts.
+    Unfelt,
+    /// Anywhere: for a pair that nothing else frees. In an obtuse corner both may stand beyond the corner.
+    Felt,
+}
 
 /// The world with the seams of both sides.
 #[derive(Clone, Debug)]
@@ -70,10 +81,37 @@ impl Solids {
         flush(&self.fixed, piece, face, other)
     }
 
+    /// The same contact with the faces that are one plane with the contact's own: part, piece and contact.
+    pub fn flush_contacts(
+        &self,
+        part: u32,
+        piece: u32,
+        contact: BasicContact,
+    ) -> impl Iterator<Item = (u32, u32, BasicContact)> {
+        let (of_a, of_b): (&[_], &[_]) = match contact {
+            BasicContact::TypeA { face_a, .. } => (self.moving.flush(part as usize, face_a), &[]),
+            BasicContact::TypeB { face_b, .. } => (&[], self.fixed.flush(piece as usize, face_b)),
+            BasicContact::TypeC { .. } => (&[], &[]),
+        };
+        let with_a = move |(other, face_a): &(u32, FaceId)| match contact {
+            BasicContact::TypeA { vertex_b, .. } => {
+                Some((*other, piece, BasicContact::TypeA { face_a: *face_a, vertex_b }))
+            }
+            _ => None,
+        };
+        let with_b = move |(other, face_b): &(u32, FaceId)| match contact {
+            BasicContact::TypeB { vertex_a, .. } => {
+                Some((part, *other, BasicContact::TypeB { vertex_a, face_b: *face_b }))
+            }
+            _ => None,
+        };
+        of_a.iter().filter_map(with_a).chain(of_b.iter().filter_map(with_b))
+    }
+
     /// Whether the contact is one of the uncut solids. Vertices and edges are judged where they are; a face that is
     /// covered in part is felt while A's contact or A's middle stands over the open part. (The contact alone does not
     /// decide: deep in a corner it lies inside the other wall, and still this wall must push.)
-    fn is_felt_plane(&self, part: usize, piece: usize, placed: &Placed, c: &CFace) -> bool {
+    fn is_felt_plane(&self, part: usize, piece: usize, placed: &Placed, c: &CFace, covered: Covered) -> bool {
         let (a, b) = (self.part(part), self.piece(piece));
         let at = contact_point_turned(c.contact, a, b, placed.x, &placed.r);
         let into_a = placed.r.transpose();
@@ -83,6 +121,7 @@ impl Solids {
                 let face_felt = match self.fixed.cover(piece, face_b) {
                     Cover::Open => true,
                     Cover::Internal => false,
+                    Cover::Partial if covered == Covered::Felt => true,
                     Cover::Partial => [at, placed.point(a.center())]
                         .iter()
                         .any(|p| !self.fixed.is_covered(piece, face_b, nearest_in_face(b, face_b, *p))),
@@ -96,6 +135,7 @@ impl Solids {
                 let face_felt = match self.moving.cover(part, face_a) {
                     Cover::Open => true,
                     Cover::Internal => false,
+                    Cover::Partial if covered == Covered::Felt => true,
                     Cover::Partial => [at, b.center()]
                         .iter()
                         .any(|p| !self.moving.is_covered(part, face_a, nearest_in_face(a, face_a, seen_from_a(*p)))),
@@ -128,8 +168,8 @@ impl Solids {
     }
 
     /// Whether the pair's nearest plane is one of the uncut solids.
-    pub fn is_felt(&self, part: usize, piece: usize, placed: &Placed, near: &CFace) -> bool {
-        self.is_seamless(part, piece) || self.is_felt_plane(part, piece, placed, near)
+    pub fn is_felt(&self, part: usize, piece: usize, placed: &Placed, near: &CFace, covered: Covered) -> bool {
+        self.is_seamless(part, piece) || self.is_felt_plane(part, piece, placed, near, covered)
     }
 
     /// Where `near` takes place and another C-face meets it there, within `tie` metres: the felt one, of a face at Near's features
@@ -139,7 +179,7 @@ impl Solids {
         let mut against = SAME;
         self.offer_planes_beside(part, piece, placed, near, -tie, |face| {
             let alike = face.normal_w.dot(near.normal_w);
-            if alike < against && self.is_felt(part, piece, placed, &face) {
+            if alike < against && self.is_felt(part, piece, placed, &face, Covered::Unfelt) {
                 against = alike;
                 best = Some(face);
             }
@@ -201,6 +241,12 @@ impl Solids {
         }
     }
 
+    /// The plane of a contact if it can take place at this orientation.
+    pub fn applicable_plane(&self, part: usize, piece: usize, placed: &Placed, contact: BasicContact) -> Option<CFace> {
+        let (a, b) = (self.part(part), self.piece(piece));
+        is_applicable_turned(contact, a, b, &placed.r).then(|| CFace::at_turned(contact, a, b, placed.x, &placed.r))
+    }
+
     /// Where `near` is not felt: the felt C-face with the largest signed distance among the face contacts and, around the
     /// best of them and around `near`, the edge contacts. None if nothing is felt. `hint` is the pair's last answer: what
     /// cannot better it is not looked at.
@@ -210,32 +256,69 @@ impl Solids {
         piece: usize,
         placed: &Placed,
         near: &CFace,
+        covered: Covered,
         hint: &mut Option<BasicContact>,
     ) -> Option<CFace> {
-        let (a, b) = (self.part(part), self.piece(piece));
         let last = hint
-            .filter(|c| is_applicable_turned(*c, a, b, &placed.r))
-            .map(|c| CFace::at_turned(c, a, b, placed.x, &placed.r))
-            .filter(|c| self.is_felt_plane(part, piece, placed, c));
-        let best = self.felt_from(part, piece, placed, near, last);
+            .and_then(|c| self.applicable_plane(part, piece, placed, c))
+            .filter(|c| self.is_felt_plane(part, piece, placed, c, covered));
+        let best = self.felt_from(part, piece, placed, near, covered, last);
         *hint = best.map(|c| c.contact);
         best
     }
 
-    /// See [`Solids::felt_plane`]; `best` is known already.
-    fn felt_from(
+    /// The felt contact of a face with the largest signed distance, if that exceeds `known`, metres.
+    fn felt_face(
         &self,
         part: usize,
         piece: usize,
         placed: &Placed,
         near: &CFace,
-        mut best: Option<CFace>,
+        covered: Covered,
+        known: f64,
     ) -> Option<CFace> {
-        // No plane is nearer than Near's: a tie cannot be bettered.
-        let tie = near.distance - 1e-12;
-        if best.is_some_and(|f| f.distance >= tie) {
-            return best;
-        }
+        let mut best = None;
+        self.each_face(part, piece, placed, near, known, |face, known| {
+            if face.distance > known && self.is_felt_plane(part, piece, placed, &face, covered) {
+                best = Some(face);
+                return face.distance;
+            }
+            known
+        });
+        best
+    }
+
+    /// Whether some other face than that of `plane`, felt where it is open, has a signed distance of more than `known`, metres.
+    pub fn is_rivalled(
+        &self,
+        part: usize,
+        piece: usize,
+        placed: &Placed,
+        near: &CFace,
+        plane: &CFace,
+        known: f64,
+    ) -> bool {
+        let mut rivalled = false;
+        self.each_face(part, piece, placed, near, known, |face, known| {
+            rivalled |= face.distance > known
+                && face.normal_w.dot(plane.normal_w) < 1.0 - SAME_NORMAL
+                && self.is_felt_plane(part, piece, placed, &face, Covered::Felt);
+            known
+        });
+        rivalled
+    }
+
+    /// Gives `each` the contacts of the faces whose signed distances may exceed what is known, metres: at first `known`, then
+    /// what it answers.
+    fn each_face(
+        &self,
+        part: usize,
+        piece: usize,
+        placed: &Placed,
+        near: &CFace,
+        mut known: f64,
+        mut each: impl FnMut(CFace, f64) -> f64,
+    ) {
         let (a, b) = (self.part(part), self.piece(piece));
         let (center_a, center_b) = (placed.point(a.center()), placed.seen_from_a(b.center()));
         // A body lies at least as far behind a plane as the ball that it holds, and as any vertex: those at Near tell most.
@@ -247,23 +330,36 @@ impl Solids {
         let is_beyond = |plane: &Plane, center: DVec3, ball: f64, at: &[DVec3; 3], known: f64| {
             plane.signed_distance(center) - ball > known && at.iter().all(|p| plane.signed_distance(*p) > known)
         };
-        let mut known = best.map_or(f64::NEG_INFINITY, |f| f.distance);
-        let mut offer = |face: CFace, known: &mut f64| {
-            if face.distance > *known && self.is_felt_plane(part, piece, placed, &face) {
-                *known = face.distance;
-                best = Some(face);
-            }
-        };
         for face_b in b.faces().filter(|f| !self.is_internal_b(piece, *f)) {
             if is_beyond(&b.face_plane(face_b), center_a, ball_a, &at_a, known) {
-                offer(plane_of_face_b(a, b, placed, face_b), &mut known);
+                known = each(plane_of_face_b(a, b, placed, face_b), known);
             }
         }
         for face_a in a.faces().filter(|f| !self.is_internal_a(part, *f)) {
             if is_beyond(&a.face_plane(face_a), center_b, ball_b, &at_b, known) {
-                offer(plane_of_face_a(a, b, placed, face_a), &mut known);
+                known = each(plane_of_face_a(a, b, placed, face_a), known);
             }
         }
+    }
+
+    /// See [`Solids::felt_plane`]; `best` is known already.
+    fn felt_from(
+        &self,
+        part: usize,
+        piece: usize,
+        placed: &Placed,
+        near: &CFace,
+        covered: Covered,
+        mut best: Option<CFace>,
+    ) -> Option<CFace> {
+        // No plane is nearer than Near's: a tie cannot be bettered.
+        let tie = near.distance - 1e-12;
+        if best.is_some_and(|f| f.distance >= tie) {
+            return best;
+        }
+        let (a, b) = (self.part(part), self.piece(piece));
+        best =
+            self.felt_face(part, piece, placed, near, covered, best.map_or(f64::NEG_INFINITY, |f| f.distance)).or(best);
         if best.is_some_and(|f| f.distance >= tie) {
             return best;
         }
@@ -283,7 +379,7 @@ impl Solids {
                         let face = CFace::at_turned(c, a, b, placed.x, &placed.r);
                         if best.is_none_or(|o| face.distance > o.distance)
                             && is_applicable_turned(c, a, b, &placed.r)
-                            && self.is_felt_plane(part, piece, placed, &face)
+                            && self.is_felt_plane(part, piece, placed, &face, covered)
                         {
                             best = Some(face);
                         }

@@ -57,6 +57,48 @@ fn peg_on_two_walls_and_the_bottom_feels_each_once() {
 }
 
 /// At the far rim the top, which carries, and the side of the piece there both pass through the place of contact.
+/// A wall through the y axis that leans back, so that `angle` (radians) is free between it and the floor, which covers its foot.
+fn leaning_wall(angle: f64) -> Polyhedron {
+    let up = DVec3::new(angle.cos(), 0.0, angle.sin());
+    let behind = DVec3::new(-up.z, 0.0, up.x);
+    let corner = |i: usize| {
+        let deep = if i & 1 == 0 { 0.0 } else { 0.02 };
+        let along = if i & 2 == 0 { -0.02 } else { 0.06 };
+        up * along + behind * deep + DVec3::Y * if i & 4 == 0 { -0.05 } else { 0.05 }
+    };
+    let corners: Vec<DVec3> = (0..8).map(corner).collect();
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    Polyhedron::from_faces(&corners, &faces.map(|f| f.to_vec())).expect("a slab is a polyhedron")
+}
+
+/// In an obtuse corner both the contact and A's middle stand over the part of the wall that the floor covers.
+#[test]
+fn obtuse_corners_push_by_the_nearest_free_place() {
+    for degrees in [95.0f64, 110.0, 120.0, 135.0, 150.0, 165.0] {
+        let angle = degrees.to_radians();
+        let floor = cuboid(mm(-60.0, -50.0, -20.0), mm(80.0, 50.0, 0.0));
+        let w = world(block(mm(10.0, 10.0, 10.0)), vec![floor, leaning_wall(angle)]);
+        for law in LAWS {
+            let mut r = Renderer::new(w.clone());
+            for i in 0..=200 {
+                // From 5 mm over the corner to where both planes are entered by 1 mm.
+                let depth = 6e-3 * f64::from(i) / 200.0 - 5e-3;
+                let out_of_both = DVec3::new((1.0 + angle.cos()) / angle.sin(), 0.0, 1.0);
+                let hand = Pose::new(mm(5.0, 0.0, 5.0) - out_of_both * depth, DQuat::IDENTITY);
+                let out = r.render(&hand, &gains(law), 1e-3);
+                let expected = out_of_both * depth.max(0.0) * 1e3;
+                assert!(
+                    (out.wrench.force - expected).length() < 1e-6,
+                    "{degrees} {law:?} {depth}: {}, not {expected}",
+                    out.wrench.force
+                );
+                assert!((out.depth - depth.max(0.0)).abs() < 1e-9, "{degrees} {law:?} {depth}: {}", out.depth);
+            }
+        }
+    }
+}
+
+/// At the far rim the top, which carries, and the side of the piece there meet at the proxy, equal but for rounding.
 #[test]
 fn a_block_that_slides_flat_over_a_hole_does_not_catch_on_its_rim() {
     let w = world(block(mm(16.0, 40.0, 10.0)), hole());

@@ -1,0 +1,180 @@
+//! A face of A laid on a face of B: where they lie over each other, and what takes place there.
+
+use crate::placed::Placed;
+use crate::region::{RegionPoint, Scope};
+use crate::solid::Solids;
+use cspace::{BasicContact, EdgeId, FaceId, Plane, Polyhedron, VertexId};
+use spatial::{DMat3, DVec3};
+
+/// Where a corner of the region comes from: positions in the rings of A's and of B's face.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Corner {
+    /// A vertex of A over B's face.
+    OfA(usize),
+    /// A vertex of B under A's face.
+    OfB(usize),
+    /// An edge of A over one of B.
+    Crossing(usize, usize),
+}
+
+/// Edges that cross at less than this angle (radians) have no reliable common normal: the face's is used.
+pub(crate) const PARALLEL_EDGES: f64 = 0.02;
+/// Cosines between the two faces, and between either and the sight, below which they do not lie over each other.
+const STEEP: f64 = 0.1;
+
+/// Two faces and the direction in which they are laid on each other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FacePair<'a> {
+    pub a: &'a Polyhedron,
+    pub b: &'a Polyhedron,
+    /// Indices of the bodies in their assemblies.
+    part: usize,
+    piece: usize,
+    face_a: FaceId,
+    face_b: FaceId,
+    placed: &'a Placed,
+    scope: &'a Scope,
+    /// Unit, axes of W.
+    sight: DVec3,
+    /// Of A's face, inward.
+    normal_a: DVec3,
+    plane_b: Plane,
+    /// Cosines between the normals of the faces, and between the sight and B's.
+    lean: f64,
+    slope: f64,
+    /// Corners higher than this above B's plane are beyond the scope, metres.
+    pub highest: f64,
+}
+
+impl<'a> FacePair<'a> {
+    /// None if the faces do not lie over each other. `near_w` is Near's normal.
+    pub fn new(
+        solids: &'a Solids,
+        (part, piece): (usize, usize),
+        (face_a, face_b): (FaceId, FaceId),
+        placed: &'a Placed,
+        near_w: DVec3,
+        scope: &'a Scope,
+    ) -> Option<Self> {
+        let (a, b) = (solids.part(part), solids.piece(piece));
+        let plane_b = b.face_plane(face_b);
+        let normal_a = -(placed.r * a.face_plane(face_a).normal);
+        let sight = if scope.along_near { near_w } else { plane_b.normal };
+        let (lean, slope) = (normal_a.dot(plane_b.normal), sight.dot(plane_b.normal));
+        if lean <= STEEP || slope <= STEEP || sight.dot(normal_a) <= STEEP {
+            return None;
+        }
+        let highest = if scope.along_near { scope.reach * slope } else { scope.reach / lean };
+        Some(Self { a, b, part, piece, face_a, face_b, placed, scope, sight, normal_a, plane_b, lean, slope, highest })
+    }
+
+    /// The vertices of A's face.
+    pub fn ring_a(&self) -> &'a [VertexId] {
+        self.a.face_vertices(self.face_a)
+    }
+
+    /// How high a point lies above B's plane, metres.
+    pub fn height(&self, p: DVec3) -> f64 {
+        self.plane_b.signed_distance(p)
+    }
+
+    /// The sides of B's face as planes along the sight: outward normals, not of unit length, and offsets.
+    pub fn sides_of_b(&self) -> impl Iterator<Item = (DVec3, f64)> + use<'a> {
+        let Self { plane_b, sight, slope, .. } = *self;
+        self.b.face_sides(self.face_b).iter().map(move |side| {
+            let lean = side.normal.dot(sight);
+            (side.normal * slope - plane_b.normal * lean, side.distance * slope - plane_b.distance * lean)
+        })
+    }
+
+    /// The vertices of B's face that lie under A's face by more than `same` metres from its border, each with the point of A's
+    /// face over it.
+    pub fn vertices_of_b(&self, same: f64) -> impl Iterator<Item = (Corner, DVec3)> + '_ {
+        let on_a = self.placed.point(self.a.vertex(self.ring_a()[0]));
+        let per_height = 1.0 / self.normal_a.dot(self.sight);
+        self.b.face_vertices(self.face_b).iter().enumerate().filter_map(move |(j, v)| {
+            let at = self.b.vertex(*v);
+            let span = self.normal_a.dot(on_a - at) * per_height;
+            if span * self.slope > self.highest {
+                return None;
+            }
+            let point = at + self.sight * span;
+            let seen = self.placed.seen_from_a(point);
+            let is_under = self.a.face_sides(self.face_a).iter().all(|s| s.signed_distance(seen) < -same);
+            is_under.then_some((Corner::OfB(j), point))
+        })
+    }
+
+    /// The basic contact at a corner of the region, from the point of A's face there. None where there is no border to touch,
+    /// since a face goes on in another piece of its body, and beyond the reach.
+    pub fn contact(&self, solids: &Solids, corner: Corner, point: DVec3) -> Option<RegionPoint> {
+        let height = self.height(point);
+        if height > self.highest {
+            return None;
+        }
+        let foot = point - self.sight * (height / self.slope);
+        if self.scope.wide && self.is_cut_in_a(solids, corner, point) {
+            // Weighted by their depths, the ends of a cut in A's face would count as contacts.
+            return None;
+        }
+        let (edges_a, edges_b) = (self.a.face_edges(self.face_a), self.b.face_edges(self.face_b));
+        let (contact, point_w, normal_w, gap) = match corner {
+            Corner::OfA(i) => {
+                let vertex_a = self.ring_a()[i];
+                (BasicContact::TypeB { vertex_a, face_b: self.face_b }, foot, self.plane_b.normal, height)
+            }
+            Corner::OfB(j) => {
+                let vertex_b = self.b.face_vertices(self.face_b)[j];
+                let at = self.b.vertex(vertex_b);
+                let last = if j == 0 { edges_b.len() - 1 } else { j - 1 };
+                if [last, j].iter().any(|s| solids.goes_on_b(self.piece, self.face_b, *s, at)) {
+                    return None;
+                }
+                (BasicContact::TypeA { face_a: self.face_a, vertex_b }, at, self.normal_a, height * self.lean)
+            }
+            Corner::Crossing(i, j) => {
+                if solids.goes_on_b(self.piece, self.face_b, j, foot) {
+                    return None;
+                }
+                let (edge_a, edge_b) = (edges_a[i], edges_b[j]);
+                let (normal_w, gap) =
+                    crossing(self.a, edge_a, self.b, edge_b, &self.placed.r, self.plane_b.normal, height);
+                (BasicContact::TypeC { edge_a, edge_b }, foot, normal_w, gap)
+            }
+        };
+        let gap = if self.scope.along_near { height / self.slope } else { gap };
+        (gap <= self.scope.reach).then_some(RegionPoint { contact, point_w, normal_w, gap })
+    }
+
+    /// Whether A's face goes on in another part of A beyond a side that the corner lies on.
+    fn is_cut_in_a(&self, solids: &Solids, corner: Corner, point: DVec3) -> bool {
+        let is_cut = |side| solids.goes_on_a(self.part, self.face_a, side, point, self.placed);
+        match corner {
+            Corner::OfA(i) => is_cut(i) || is_cut(if i == 0 { self.ring_a().len() - 1 } else { i - 1 }),
+            Corner::OfB(_) => false,
+            Corner::Crossing(i, _) => is_cut(i),
+        }
+    }
+}
+
+/// Normal and gap of two crossing edges whose vertical distance above B's face is `height`.
+fn crossing(
+    a: &Polyhedron,
+    edge_a: EdgeId,
+    b: &Polyhedron,
+    edge_b: EdgeId,
+    r: &DMat3,
+    normal_b: DVec3,
+    height: f64,
+) -> (DVec3, f64) {
+    let n = (*r * a.edge_direction(edge_a)).cross(b.edge_direction(edge_b));
+    let length = n.length();
+    if length <= PARALLEL_EDGES {
+        return (normal_b, height);
+    }
+    let lean = n.dot(normal_b) / length;
+    if lean.abs() < 0.1 {
+        return (normal_b, height);
+    }
+    (n * (lean.signum() / length), height * lean.abs())
+}
