@@ -79,7 +79,7 @@ impl<'a> FacePair<'a> {
     }
 
     /// The sides of B's face as planes along the sight: outward normals, not of unit length, and offsets.
-    pub fn sides_of_b(&self) -> impl Iterator<Item = (DVec3, f64)> + use<'a> {
+    pub fn sides_of_b(&self) -> impl Iterator<Item = (DVec3, f64)> + Clone + use<'a> {
         let Self { plane_b, sight, slope, .. } = *self;
         self.b.face_sides(self.face_b).iter().map(move |side| {
             let lean = side.normal.dot(sight);
@@ -87,22 +87,18 @@ impl<'a> FacePair<'a> {
         })
     }
 
-    /// The vertices of B's face that lie under A's face by more than `same` metres from its border, each with the point of A's
-    /// face over it.
-    pub fn vertices_of_b(&self, same: f64) -> impl Iterator<Item = (Corner, DVec3)> + '_ {
+    /// The point of A's face over the `j`-th vertex of B's face, if that lies under A's face and not within `same` metres of its
+    /// border.
+    pub fn over_vertex_of_b(&self, j: usize, same: f64) -> Option<DVec3> {
+        let at = self.b.vertex(self.b.face_vertices(self.face_b)[j]);
         let on_a = self.placed.point(self.a.vertex(self.ring_a()[0]));
-        let per_height = 1.0 / self.normal_a.dot(self.sight);
-        self.b.face_vertices(self.face_b).iter().enumerate().filter_map(move |(j, v)| {
-            let at = self.b.vertex(*v);
-            let span = self.normal_a.dot(on_a - at) * per_height;
-            if span * self.slope > self.highest {
-                return None;
-            }
-            let point = at + self.sight * span;
-            let seen = self.placed.seen_from_a(point);
-            let is_under = self.a.face_sides(self.face_a).iter().all(|s| s.signed_distance(seen) < -same);
-            is_under.then_some((Corner::OfB(j), point))
-        })
+        let span = self.normal_a.dot(on_a - at) / self.normal_a.dot(self.sight);
+        if span * self.slope > self.highest {
+            return None;
+        }
+        let point = at + self.sight * span;
+        let seen = self.placed.seen_from_a(point);
+        self.a.face_sides(self.face_a).iter().all(|s| s.signed_distance(seen) < -same).then_some(point)
     }
 
     /// The basic contact at a corner of the region, from the point of A's face there. None where there is no border to touch,
@@ -117,7 +113,6 @@ impl<'a> FacePair<'a> {
             // Weighted by their depths, the ends of a cut in A's face would count as contacts.
             return None;
         }
-        let (edges_a, edges_b) = (self.a.face_edges(self.face_a), self.b.face_edges(self.face_b));
         let (contact, point_w, normal_w, gap) = match corner {
             Corner::OfA(i) => {
                 let vertex_a = self.ring_a()[i];
@@ -126,7 +121,7 @@ impl<'a> FacePair<'a> {
             Corner::OfB(j) => {
                 let vertex_b = self.b.face_vertices(self.face_b)[j];
                 let at = self.b.vertex(vertex_b);
-                let last = if j == 0 { edges_b.len() - 1 } else { j - 1 };
+                let last = if j == 0 { self.b.face_vertices(self.face_b).len() - 1 } else { j - 1 };
                 if [last, j].iter().any(|s| solids.goes_on_b(self.piece, self.face_b, *s, at)) {
                     return None;
                 }
@@ -136,7 +131,7 @@ impl<'a> FacePair<'a> {
                 if solids.goes_on_b(self.piece, self.face_b, j, foot) {
                     return None;
                 }
-                let (edge_a, edge_b) = (edges_a[i], edges_b[j]);
+                let (edge_a, edge_b) = (self.a.face_edges(self.face_a)[i], self.b.face_edges(self.face_b)[j]);
                 let (normal_w, gap) =
                     crossing(self.a, edge_a, self.b, edge_b, &self.placed.r, self.plane_b.normal, height);
                 (BasicContact::TypeC { edge_a, edge_b }, foot, normal_w, gap)

@@ -35,11 +35,34 @@ impl RegionPoint {
     }
 }
 
-/// The end of what lies over B's face of an edge of A: how far along the edge, 0 to 1, and the side of B's face that cuts it.
+/// What of an edge of A lies over B's face: from where to where, 0 to 1, and the sides of B's face that cut it.
 #[derive(Clone, Copy, Debug)]
-struct End {
-    at: f64,
-    side: Option<usize>,
+struct Span {
+    enter: f64,
+    leave: f64,
+    /// `NONE` where the edge's own end lies over the face.
+    entered: u32,
+    left: u32,
+}
+
+impl Span {
+    const NONE: u32 = u32::MAX;
+    const WHOLE: Self = Self { enter: 0.0, leave: 1.0, entered: Self::NONE, left: Self::NONE };
+
+    /// Cuts by the side `j`, beyond which the ends lie by `p` and `q`, metres.
+    fn cut(&mut self, j: u32, p: f64, q: f64) {
+        if p > 0.0 {
+            let at = if q > 0.0 { f64::INFINITY } else { p / (p - q) };
+            if at >= self.enter {
+                (self.enter, self.entered) = (at, j);
+            }
+        } else if q > 0.0 {
+            let at = p / (p - q);
+            if at <= self.leave {
+                (self.leave, self.left) = (at, j);
+            }
+        }
+    }
 }
 
 /// Which contacts of a region are wanted, and seen in which direction.
@@ -59,11 +82,13 @@ pub(crate) struct Scope {
 /// Scratch for clipping; grows at construction only.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Clipper {
-    /// The sides of B's face as planes along the sight: outward normal, not of unit length, and offset.
-    sides: Vec<(DVec3, f64)>,
-    /// How far the two vertices of the edge in hand lie beyond each side.
-    from: Vec<f64>,
-    to: Vec<f64>,
+    /// The vertices of A's face, W, and how far they lie beyond the side in hand, metres.
+    ring: Vec<DVec3>,
+    beyond: Vec<f64>,
+    /// Which sides of B's face have something of A's face beyond them.
+    cuts: Vec<bool>,
+    /// Of each edge of A's face, which leaves the vertex of the same index.
+    spans: Vec<Span>,
     pairs: Vec<(FaceId, FaceId)>,
 }
 
@@ -77,11 +102,13 @@ impl Clipper {
     /// Room for the largest faces of the world.
     pub fn for_world(world: &World) -> Self {
         let most = |p: &Polyhedron| p.faces().map(|f| p.face_vertices(f).len()).max().unwrap_or(0);
-        let room = world.fixed.iter().map(|p| most(&p.polyhedron)).max().unwrap_or(0);
+        let room = world.moving.iter().map(|p| most(p)).max().unwrap_or(0);
+        let sides = world.fixed.iter().map(|p| most(&p.polyhedron)).max().unwrap_or(0);
         Self {
-            sides: Vec::with_capacity(room),
-            from: Vec::with_capacity(room),
-            to: Vec::with_capacity(room),
+            ring: Vec::with_capacity(room),
+            beyond: Vec::with_capacity(room),
+            cuts: Vec::with_capacity(sides),
+            spans: Vec::with_capacity(room),
             pairs: Vec::with_capacity(MAX_PAIRS),
         }
     }
@@ -177,79 +204,66 @@ impl Clipper {
             }
         };
         self.edges_of_a(&pair, placed, same, &mut add);
-        for (corner, point) in pair.vertices_of_b(same) {
-            add(corner, point);
+        // A vertex of B under A's face has something of A beyond both its sides.
+        let mut last = self.cuts.last().copied().unwrap_or(false);
+        for (j, cuts) in self.cuts.iter().enumerate() {
+            if std::mem::replace(&mut last, *cuts)
+                && *cuts
+                && let Some(point) = pair.over_vertex_of_b(j, same)
+            {
+                add(Corner::OfB(j), point);
+            }
         }
     }
 
     /// Gives `add` the vertices of A's face that lie over B's face, and where A's edges cross B's: A's edges are cut by the sides
     /// of B's face (Cyrus and Beck 1978).
     fn edges_of_a(&mut self, pair: &FacePair<'_>, placed: &Placed, same: f64, add: &mut impl FnMut(Corner, DVec3)) {
-        self.sides.clear();
-        self.sides.extend(pair.sides_of_b().map(|(outward, offset)| (outward, offset + same)));
-        let beyond = |sides: &[(DVec3, f64)], p: DVec3, out: &mut Vec<f64>| {
-            out.clear();
-            out.extend(sides.iter().map(|(outward, offset)| outward.dot(p) - offset));
+        let Self { ring, beyond, cuts, spans, .. } = self;
+        ring.clear();
+        ring.extend(pair.ring_a().iter().map(|v| placed.point(pair.a.vertex(*v))));
+        let n = ring.len();
+        let next = |i: usize| if i + 1 < n { i + 1 } else { 0 };
+        spans.clear();
+        spans.resize(n, Span::WHOLE);
+        cuts.clear();
+        let sides = pair.sides_of_b();
+        for (j, (outward, offset)) in sides.clone().enumerate() {
+            // What lies outside by no more than `same` counts as inside.
+            beyond.clear();
+            beyond.extend(ring.iter().map(|p| outward.dot(*p) - offset - same));
+            let is_cutting = beyond.iter().any(|h| *h > 0.0);
+            cuts.push(is_cutting);
+            if !is_cutting {
+                continue;
+            }
+            for (i, span) in spans.iter_mut().enumerate() {
+                span.cut(j as u32, beyond[i], beyond[next(i)]);
+            }
+        }
+        // Where the side's own line is crossed.
+        let crossed = |i: usize, j: u32| {
+            let (p, q) = (ring[i], ring[next(i)]);
+            let (outward, offset) = sides.clone().nth(j as usize)?;
+            let (p_beyond, q_beyond) = (outward.dot(p) - offset, outward.dot(q) - offset);
+            Some(p + (q - p) * (p_beyond / (p_beyond - q_beyond)).clamp(0.0, 1.0))
         };
-        let ring = pair.ring_a();
-        let start = placed.point(pair.a.vertex(ring[0]));
-        let (mut p, mut height) = (start, pair.height(start));
-        // Whether `from` holds for `p`.
-        let mut known = false;
-        for i in 0..ring.len() {
-            let q = ring.get(i + 1).map_or(start, |v| placed.point(pair.a.vertex(*v)));
-            let next_height = pair.height(q);
-            let counts = height.min(next_height) <= pair.highest;
-            if counts {
-                if !known {
-                    beyond(&self.sides, p, &mut self.from);
-                }
-                beyond(&self.sides, q, &mut self.to);
-                if let Some([enter, leave]) = inside(&self.from, &self.to, same) {
-                    match enter.side {
-                        None => add(Corner::OfA(i), p),
-                        Some(j) => add(Corner::Crossing(i, j), p.lerp(q, enter.at)),
-                    }
-                    if let Some(j) = leave.side {
-                        add(Corner::Crossing(i, j), p.lerp(q, leave.at));
-                    }
-                }
-                std::mem::swap(&mut self.from, &mut self.to);
+        for (i, span) in spans.iter().enumerate() {
+            if span.enter > span.leave || pair.height(ring[i]).min(pair.height(ring[next(i)])) > pair.highest {
+                continue;
             }
-            (p, height, known) = (q, next_height, counts);
-        }
-    }
-}
-
-/// The part of an edge within all sides, from how far its ends lie beyond each, `same` included: none if there is none.
-fn inside(from: &[f64], to: &[f64], same: f64) -> Option<[End; 2]> {
-    let mut enter = End { at: 0.0, side: None };
-    let mut leave = End { at: 1.0, side: None };
-    for (j, (p, q)) in from.iter().zip(to).enumerate() {
-        if *p <= 0.0 && *q <= 0.0 {
-            continue;
-        }
-        if *p > 0.0 && *q > 0.0 {
-            return None;
-        }
-        let at = p / (p - q);
-        if *p > 0.0 {
-            if at > enter.at || enter.side.is_none() {
-                enter = End { at, side: Some(j) };
+            if span.entered == Span::NONE {
+                add(Corner::OfA(i), ring[i]);
+            } else if let Some(p) = crossed(i, span.entered) {
+                add(Corner::Crossing(i, span.entered as usize), p);
             }
-        } else if at < leave.at || leave.side.is_none() {
-            leave = End { at, side: Some(j) };
+            if span.left != Span::NONE
+                && let Some(p) = crossed(i, span.left)
+            {
+                add(Corner::Crossing(i, span.left as usize), p);
+            }
         }
     }
-    if enter.at > leave.at {
-        return None;
-    }
-    // Where the side's own line is crossed, which lies `same` within what still counts as inside.
-    let exact = |end: End| match end.side {
-        Some(j) => End { at: ((from[j] + same) / (from[j] - to[j])).clamp(0.0, 1.0), ..end },
-        None => end,
-    };
-    Some([exact(enter), exact(leave)])
 }
 
 /// Keeps a contact unless it is a duplicate of one from `first` on or there is no room; of two at one place the first stays.
