@@ -120,6 +120,18 @@ impl BagReader {
         (0..self.topics.len()).filter(|&i| self.topics[i].type_name == type_name).collect()
     }
 
+    /// Why there is nothing of these types: the bag has no such topic, or the file that had it is damaged.
+    #[must_use]
+    pub fn absent(&self, type_names: &[&str]) -> String {
+        let mut messages = self.messages();
+        messages.by_ref().for_each(drop);
+        let reason = format!("the bag has no topic of {}", type_names.join(" or "));
+        match messages.damage() {
+            [] => reason,
+            [d, ..] => format!("{reason}; damage: {} at byte {}: {}", d.file, d.offset, d.what),
+        }
+    }
+
     /// All messages, file by file, in the order of their times within a chunk.
     #[must_use]
     pub fn messages(&self) -> Messages<'_> {

@@ -31,7 +31,7 @@ pub fn read_poses(dir: &Path, topic: Option<&str>) -> Result<PoseLog, BagError> 
     let [chosen] = chosen[..] else {
         let names = candidates.iter().map(|&i| name(i)).collect::<Vec<_>>().join(", ");
         let reason = if candidates.is_empty() {
-            format!("the bag has no topic of {}", PoseStamped::NAME)
+            reader.absent(&[PoseStamped::NAME])
         } else {
             match topic {
                 Some(t) => format!("no poses on {t}; choose one of {names} (--topic)"),

@@ -67,7 +67,7 @@ impl<'a> Ticks<'a> {
         let chosen: Vec<usize> = candidates.iter().copied().filter(wanted).collect();
         let topic = match chosen[..] {
             [one] => one,
-            [] if candidates.is_empty() => return fail(format!("the bag has no topic of {}", TickBatch::NAME)),
+            [] if candidates.is_empty() => return fail(reader.absent(&[TickBatch::NAME])),
             [] => {
                 return fail(format!("no ticks on {}; choose one of {} (--topic)", topic.unwrap_or_default(), names()));
             }

@@ -24,12 +24,8 @@ impl AtomicFile {
         if path.is_dir() {
             return Err(Failure::file(path, "is a folder, not a file to write"));
         }
+        crate::outputs::spare(path, inputs)?;
         let own = path.canonicalize();
-        if let Ok(own) = &own
-            && inputs.iter().any(|i| i.canonicalize().is_ok_and(|i| i == *own))
-        {
-            return Err(Failure::file(path, "is read by this command: name another file to write"));
-        }
         let place = if own.is_ok() && !path.is_file() {
             Place::Device(OpenOptions::new().write(true).open(path).map_err(|e| cannot_write(path, &e))?)
         } else {

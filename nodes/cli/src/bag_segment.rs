@@ -47,7 +47,7 @@ fn not_negative(text: &str) -> Result<f64, String> {
 /// `bag segment`: the contact states of a run as CSV.
 pub fn segment(dir: &Path, out: &Path, cut: &Cut) -> Result<(), Failure> {
     let run = Run::read(dir, cut)?;
-    let mut csv = AtomicFile::create(out, &[])?;
+    let mut csv = AtomicFile::create(out, &[dir])?;
     csv.write("t_begin,t_end,formation,principal_contacts,mean_force_n,max_force_n,work_j,mean_torque_nm,max_torque_nm,max_depth_m,ticks\n")?;
     for segment in &run.segments {
         let s = &segment.statistics;
@@ -91,7 +91,7 @@ pub fn graph(dirs: &[PathBuf], out: &Path, cut: &Cut) -> Result<(), Failure> {
         scene = scene.or(run.scene_hash.map(|hash| (hash, dir.as_path())));
         graph.add(&run.segments);
     }
-    let mut file = AtomicFile::create(out, &[])?;
+    let mut file = AtomicFile::create(out, &dirs.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     file.write(&if is_json { graph.to_json() } else { graph.to_dot() })?;
     file.finish()?;
     let transitions: u64 = graph.transitions.values().sum();

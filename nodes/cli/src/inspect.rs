@@ -1,4 +1,5 @@
 use crate::failure::Failure;
+use crate::outputs::spare;
 use ::inspect::{Options, Recorder, Sink, Subject, record_overview};
 use bag::{BagReader, Ticks};
 use scene::{Bundle, Scene};
@@ -20,12 +21,15 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Runs `inspect`.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    spare(&args.rrd, &[&args.source])?;
     let sink = Sink::File(args.rrd.clone());
-    if args.source.is_dir() { bag(&args.source, &sink) } else { scene(&args.source, &sink) }
+    if args.source.is_dir() { bag(&args.source, &sink) } else { scene(&args.source, &args.rrd, &sink) }
 }
 
-fn scene(path: &Path, sink: &Sink) -> Result<(), Failure> {
+fn scene(path: &Path, rrd: &Path, sink: &Sink) -> Result<(), Failure> {
     let scene = Scene::load(path).map_err(Failure::plain)?;
+    let files = scene.bundle.paths();
+    spare(rrd, &files.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     record_overview(&Subject::of(&scene), sink, PATIENCE).map_err(Failure::plain)
 }
 

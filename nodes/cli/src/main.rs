@@ -10,6 +10,7 @@ mod csv_io;
 mod failure;
 #[cfg(feature = "inspect")]
 mod inspect;
+mod outputs;
 mod replay;
 mod replay_motion;
 #[cfg(feature = "inspect")]

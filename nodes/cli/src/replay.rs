@@ -2,6 +2,7 @@ use crate::atomic_file::AtomicFile;
 use crate::bag_out::BagOut;
 use crate::csv_io::read_text;
 use crate::failure::Failure;
+use crate::outputs::{spare, tell_apart};
 use crate::replay_motion::Motion;
 use crate::stdout::say;
 use crate::step_time::StepTime;
@@ -49,6 +50,18 @@ pub struct Args {
     /// Also print the time of a step.
     #[arg(long)]
     pub time: bool,
+}
+
+impl Args {
+    #[cfg(feature = "inspect")]
+    const fn rrd(&self) -> Option<&PathBuf> {
+        self.rrd.as_ref()
+    }
+
+    #[cfg(not(feature = "inspect"))]
+    const fn rrd(&self) -> Option<&PathBuf> {
+        None
+    }
 }
 
 /// `--law`.
@@ -125,8 +138,13 @@ fn load_scene(args: &Args, motion: &Motion) -> Result<Scene, Failure> {
 
 /// Renders all ticks and writes what was asked for; CSV and bag appear last, when all the rest went well.
 fn render(args: &Args, scene: &Scene, config: &Config, motion: &Motion) -> Result<Vec<TickRecord>, Failure> {
-    let inputs: Vec<&Path> =
-        [&args.scene, &args.poses, &args.params].into_iter().flatten().map(PathBuf::as_path).collect();
+    let files = if args.scene.is_some() { scene.bundle.paths() } else { Vec::new() };
+    let named = [&args.poses, &args.params, &args.bag].into_iter().flatten();
+    let inputs: Vec<&Path> = named.chain(&files).map(PathBuf::as_path).collect();
+    let outs: Vec<&Path> =
+        [Some(&args.out), args.bag_out.as_ref(), args.rrd()].into_iter().flatten().map(PathBuf::as_path).collect();
+    tell_apart(&outs)?;
+    outs.iter().try_for_each(|out| spare(out, &inputs))?;
     let mut out = AtomicFile::create(&args.out, &inputs)?;
     out.write(HEADER)?;
     let mut tick = Tick::new(scene, config);
@@ -141,7 +159,7 @@ fn render(args: &Args, scene: &Scene, config: &Config, motion: &Motion) -> Resul
     }
     let bag = args.bag_out.as_ref().map(|dir| BagOut::write(dir, scene, config, &records)).transpose()?;
     #[cfg(feature = "inspect")]
-    if let Some(rrd) = &args.rrd {
+    if let Some(rrd) = args.rrd() {
         crate::rrd::record(rrd, scene, &records)?;
     }
     out.finish()?;

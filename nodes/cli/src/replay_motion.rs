@@ -107,12 +107,15 @@ fn seconds(stamp: Stamp) -> f64 {
 
 /// Why neither ticks nor poses were found.
 fn no_motion(dir: &Path, topic: Option<&str>, ticks: &BagError, poses: &BagError) -> Failure {
+    let Ok(reader) = BagReader::open(dir) else { return Failure::plain(poses) };
     let names = |type_name: &str| -> Vec<String> {
-        let Ok(reader) = BagReader::open(dir) else { return Vec::new() };
         reader.topics_of(type_name).iter().map(|&i| reader.topics()[i].name.clone()).collect()
     };
     let (of_ticks, of_poses) = (names(TickBatch::NAME), names(PoseStamped::NAME));
     match topic {
+        _ if of_ticks.is_empty() && of_poses.is_empty() => {
+            Failure::file(dir, reader.absent(&[TickBatch::NAME, PoseStamped::NAME]))
+        }
         Some(t) if !of_ticks.is_empty() && !of_ticks.iter().chain(&of_poses).any(|n| n == t) => {
             let all = [of_ticks, of_poses].concat().join(", ");
             Failure::file(dir, format!("no ticks or poses on {t}; choose one of {all} (--topic)"))

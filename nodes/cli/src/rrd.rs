@@ -11,8 +11,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// Writes a rerun recording of ticks in a scene.
 pub fn record(rrd: &Path, scene: &Scene, records: &[TickRecord]) -> Result<(), Failure> {
     let sink = Sink::File(rrd.to_owned());
-    let mut recorder =
-        Recorder::new(Subject::of(scene), &sink, &Options::default()).map_err(|e| Failure::file(rrd, e))?;
-    records.iter().try_for_each(|r| recorder.tick(r)).map_err(|e| Failure::file(rrd, e))?;
-    recorder.finish(PATIENCE).map_err(|e| Failure::file(rrd, e))
+    let mut recorder = Recorder::new(Subject::of(scene), &sink, &Options::default()).map_err(Failure::plain)?;
+    records.iter().try_for_each(|r| recorder.tick(r)).map_err(Failure::plain)?;
+    recorder.finish(PATIENCE).map_err(Failure::plain)
 }

@@ -57,6 +57,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 /// A convex polyhedron from an OBJ file; every error names the line of the vertex or face at fault.
 fn read_polyhedron(path: &Path) -> Result<Arc<Polyhedron>, Failure> {
+    let kind = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    if ["stl", "urdf"].iter().any(|other| kind.eq_ignore_ascii_case(other)) {
+        return Err(Failure::file(path, format!("track reads OBJ meshes, this is .{kind}: convert it, or use replay")));
+    }
     let text = read_text(path)?;
     let (mesh, lines) =
         scene::parse_obj_with_lines(&text).map_err(|e| Failure::line(path, e.line.unwrap_or(1), e.reason))?;

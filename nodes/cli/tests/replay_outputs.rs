@@ -116,3 +116,55 @@ fn outputs_are_whole_or_not_there_and_errors_name_the_users_file() {
     assert_eq!(names(folder.path()), ["bag", "o.csv", "p.csv", "taken"]);
     assert_eq!(names(&bag), ["bag_0.mcap", "metadata.yaml"]);
 }
+
+#[test]
+fn nothing_that_is_read_and_nothing_else_that_is_written_is_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    for name in ["scene.yaml", "peg.obj", "hole.obj"] {
+        std::fs::copy(scene().with_file_name(name), at(name)).unwrap();
+    }
+    std::fs::write(at("p.csv"), "t,x,y,z,qx,qy,qz,qw\n0,0,0,0.02,0,0,0,1\n0.001,0,0,0.02,0,0,0,1\n").unwrap();
+    let texts = || ["scene.yaml", "peg.obj", "hole.obj", "p.csv"].map(|n| std::fs::read(at(n)).unwrap());
+    let before = texts();
+    let run = |motion: [&str; 2], more: &[&str]| {
+        let args: Vec<PathBuf> = ["--scene", "scene.yaml", motion[0], motion[1]]
+            .iter()
+            .chain(more)
+            .map(|a| if a.starts_with("--") { PathBuf::from(a) } else { at(a) })
+            .collect();
+        replay(&args.iter().map(PathBuf::as_path).collect::<Vec<_>>())
+    };
+    let csv = ["--poses", "p.csv"];
+    for more in [
+        ["--out", "peg.obj"].as_slice(),
+        &["--out", "./hole.obj"],
+        &["--out", "o.csv", "--bag-out", "o.csv"],
+        #[cfg(feature = "inspect")]
+        &["--out", "o.csv", "--rrd", "p.csv"],
+        #[cfg(feature = "inspect")]
+        &["--out", "o.csv", "--rrd", "./o.csv"],
+    ] {
+        let said = error(&run(csv, more));
+        assert!(said.contains("is read by this command") || said.contains("is to be written twice"), "{said}");
+        assert!(texts() == before && names(folder.path()) == ["hole.obj", "p.csv", "peg.obj", "scene.yaml"], "{said}");
+    }
+    assert!(run(csv, &["--out", "o.csv", "--bag-out", "bag"]).status.success());
+    let said = error(&run(["--bag", "bag"], &["--out", "bag/bag_0.mcap"]));
+    assert!(said.contains("is read by this command"), "{said}");
+    assert!(run(["--bag", "bag"], &["--out", "bag/again.csv"]).status.success());
+}
+
+#[test]
+fn a_bag_without_motion_says_what_is_damaged() {
+    let folder = tempfile::tempdir().unwrap();
+    let (bag, out) = (folder.path().join("bag"), folder.path().join("o.csv"));
+    two_arms(&bag);
+    let file = bag.join("bag_0.mcap");
+    let mut data = std::fs::read(&file).unwrap();
+    data.truncate(200);
+    std::fs::write(&file, data).unwrap();
+    let said = error(&replay(&[Path::new("--bag"), &bag, Path::new("--out"), &out]));
+    assert!(said.contains("TickBatch or geometry_msgs/msg/PoseStamped; damage: bag_0.mcap at byte "), "{said}");
+    assert!(!out.exists());
+}

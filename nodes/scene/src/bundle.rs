@@ -30,6 +30,13 @@ impl Bundle {
         Ok(bundle)
     }
 
+    /// The scene file and those that it names, as far as they are files of their own.
+    #[must_use]
+    pub fn paths(&self) -> Vec<PathBuf> {
+        let meshes = self.files.keys().map(|name| self.label(name));
+        std::iter::once(self.path.clone()).chain(meshes).collect()
+    }
+
     fn add(&mut self, entry: &Entry) -> Result<(), SceneError> {
         let name = &entry.mesh.value;
         if self.files.contains_key(name) {
