@@ -3,6 +3,7 @@
 //! Source: paper section IV for the contact rules; literature is cited where the code goes beyond it.
 //! [`Renderer`] is the entry: it follows the hand's pose and gives wrench, surface contact pose and contacts.
 
+mod compromise;
 mod coupling;
 mod depth_law;
 mod face_pair;

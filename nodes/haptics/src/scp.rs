@@ -1,6 +1,7 @@
 //! The surface contact point: the nearest touching configuration to the hand's at its orientation, one or more obstacles.
 
 mod hold;
+mod refine;
 
 use crate::facing::facing_point;
 use crate::placed::Placed;
@@ -21,14 +22,10 @@ const FREED: f64 = 1e-9;
 const PARALLEL: f64 = 1e-12;
 /// Another plane of a pair is taken where the square of the way to the SCP becomes less than this part of it.
 const NEARER: f64 = 1.0 - 1e-6;
-/// Rounds in which planes are taken anew at the SCP found.
-const ROUNDS: usize = 12;
 /// An SCP farther than this many depths from the hand is compared with what other starts lead to.
 const FAR: f64 = 3.0;
 /// Pairs this close to the SCP are looked at there, in sizes of the moving part.
 const BESIDE: f64 = 6.0;
-/// Most starts tried when the first leads nowhere.
-const STARTS: usize = 5;
 
 /// A pair whose plane counts: the felt one, and its contacts in the scratch list.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +50,8 @@ pub(crate) struct Touch {
 pub(crate) struct Scp {
     pub touches: Vec<Touch>,
     best: Vec<Touch>,
+    /// The planes nearest to the hand, if others were taken since.
+    nearest: Vec<Touch>,
     rows: Vec<Row<3>>,
     /// Penetrating pairs whose nearest plane is a seam.
     unfelt: Vec<Sensed>,
@@ -68,6 +67,12 @@ pub(crate) struct Scp {
     held: Option<Held>,
     /// Farthest point of A from its origin, metres.
     lever: f64,
+    /// It is a compromise: the parts are wedged.
+    wedged: bool,
+    /// Looks around left in this tick.
+    looks: usize,
+    /// Size of the largest part, metres.
+    size: f64,
 }
 
 impl Scp {
@@ -78,6 +83,7 @@ impl Scp {
         Self {
             touches: Vec::with_capacity(pairs),
             best: Vec::with_capacity(pairs),
+            nearest: Vec::with_capacity(pairs),
             rows: Vec::with_capacity(pairs),
             unfelt: Vec::with_capacity(pairs),
             projection: Projection::new(),
@@ -88,12 +94,16 @@ impl Scp {
             last: None,
             held: None,
             lever: world.moving.iter().flat_map(|p| p.corner_ids().map(|v| p.vertex(v).length())).fold(0.0, f64::max),
+            wedged: false,
+            looks: 0,
+            size,
         }
     }
 
     pub fn reset(&mut self) {
         self.last = None;
         self.held = None;
+        self.wedged = false;
         self.hints.fill(None);
         self.around.reset();
     }
@@ -118,6 +128,7 @@ impl Scp {
         };
         if depth <= 0.0 {
             self.last = None;
+            self.wedged = false;
             return depth;
         }
         // What the others push free of is no contact at the SCP; planes equal to one that pushes are.
@@ -129,32 +140,43 @@ impl Scp {
 
     /// A pair is free on the side of any of its planes: of each pair that holds the SCP among others takes the plane that lets
     /// the SCP come nearest to the hand. The nearest to the hand need not be: where the top of a wall carries together with
-    /// others, its side holds nothing back.
-    fn choose(&mut self, solids: &Solids, placed: &Placed) {
-        if self.projection.active().count() < 2 {
+    /// others, its side holds nothing back. Where planes contradict each other, others may resolve it.
+    fn choose(&mut self, solids: &Solids, placed: &Placed, depth: f64) {
+        self.nearest.clear();
+        if self.projection.active().count() < 2 && self.projection.contradictions == 0 {
             return;
         }
         for i in 0..self.touches.len() {
-            if !self.projection.active().any(|(k, _)| k == i) {
+            let t = self.touches[i];
+            let (rows, projection) = (&mut self.rows, &mut self.projection);
+            let contradicted = projection.contradictions > 0;
+            let z = DVec3::from_array(projection.z);
+            let holds = projection.active().any(|(k, _)| k == i)
+                || contradicted && t.plane.distance + t.plane.normal_w.dot(z) < -FREED;
+            if !holds {
                 continue;
             }
-            let t = self.touches[i];
             let (part, piece) = (t.part as usize, t.piece as usize);
-            let (rows, projection) = (&mut self.rows, &mut self.projection);
-            let mut nearest = NEARER * projection.way_squared();
-            let (mut best, mut tried) = (t.plane, false);
+            let rank = |p: &Projection<3>| (p.contradictions, p.way_squared());
+            let (contradictions, way_squared) = rank(projection);
+            let mut least = (contradictions, NEARER * way_squared);
             // The SCP is no nearer than any plane's foot.
-            solids.offer_planes_beside(part, piece, placed, &t.plane, -nearest.sqrt(), |face| {
+            let reach = if contradicted { FAR * depth } else { least.1.sqrt() };
+            let (mut best, mut tried) = (t.plane, false);
+            solids.offer_planes_beside(part, piece, placed, &t.plane, -reach, |face| {
                 if solids.is_felt(part, piece, placed, &face, Covered::Unfelt) {
                     tried = true;
                     rows[i] = row(&face);
                     projection.solve(rows);
-                    if projection.contradictions == 0 && projection.way_squared() < nearest {
-                        nearest = projection.way_squared();
+                    if rank(projection) < least {
+                        least = rank(projection);
                         best = face;
                     }
                 }
             });
+            if best != t.plane && self.nearest.is_empty() {
+                self.nearest.extend_from_slice(&self.touches);
+            }
             if tried {
                 self.touches[i].plane = best;
                 rows[i] = row(&best);
@@ -167,10 +189,10 @@ impl Scp {
     fn search(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
         let depth = self.project(solids, pairs, placed, false);
         if depth > 0.0 {
-            self.choose(solids, placed);
+            self.choose(solids, placed, depth);
             self.take_projection();
-            let found = self.is_plain(solids, placed, depth) || self.refine(solids, hip, depth);
-            if found {
+            self.wedged = !self.is_plain(solids, placed, depth) && !self.refine(solids, hip, depth);
+            if !self.wedged {
                 self.begin_to_hold(solids, pairs, hip, placed, depth);
             }
         }
@@ -197,7 +219,9 @@ impl Scp {
         let mut active = self.touches.iter().filter(|t| t.push > 0.0);
         if let (Some(one), None) = (active.next(), active.next()) {
             // The foot on the nearest plane of a pair that is penetrated lies on its C-face.
-            return one.plane.distance < 0.0;
+            if self.nearest.is_empty() {
+                return one.plane.distance < 0.0;
+            }
         }
         self.takes_place(solids, &placed.shifted(self.shift))
     }
@@ -291,128 +315,6 @@ impl Scp {
     fn touch(&mut self, solids: &Solids, part: u32, piece: u32, plane: CFace) {
         self.touches.push(Touch { part, piece, plane, first: 0, end: 0, tie: tie_of(solids, part), push: 0.0 });
         self.rows.push(row(&plane));
-    }
-
-    /// The nearest touching configuration that a few starts lead to: the projection itself, the last SCP, and the foot on each
-    /// pair's plane alone. If none does, the deepest pair's foot, and false: the parts are wedged at this orientation.
-    fn refine(&mut self, solids: &Solids, hip: &Pose, depth: f64) -> bool {
-        let mut starts = [DVec3::ZERO; STARTS];
-        let mut count = 0;
-        let last = self.last.map(|p| p - hip.translation);
-        let foot = |t: &Touch| t.plane.normal_w * -t.plane.distance;
-        for start in
-            last.into_iter().chain(self.touches.iter().filter(|t| t.plane.distance < 0.0).map(foot)).take(STARTS)
-        {
-            starts[count] = start;
-            count += 1;
-        }
-        let deepest = self.touches.iter().min_by(|p, q| p.plane.distance.total_cmp(&q.plane.distance)).copied();
-        self.best.clear();
-        let mut least = f64::INFINITY;
-        if self.settle(solids, hip, false) {
-            self.keep(&mut least);
-        }
-        if least > FAR * depth {
-            for start in &starts[..count] {
-                self.touches.clear();
-                self.rows.clear();
-                self.shift = *start;
-                if self.settle(solids, hip, true) {
-                    self.keep(&mut least);
-                }
-            }
-        }
-        if least == f64::INFINITY {
-            self.best.extend(deepest.map(|t| Touch { push: -t.plane.distance, ..t }));
-        }
-        std::mem::swap(&mut self.touches, &mut self.best);
-        self.shift = self.touches.iter().map(|t| t.plane.normal_w * t.push).sum();
-        least < f64::INFINITY
-    }
-
-    fn keep(&mut self, least: &mut f64) {
-        if self.shift.length() < *least {
-            *least = self.shift.length();
-            std::mem::swap(&mut self.touches, &mut self.best);
-        }
-    }
-
-    /// Takes the planes anew at the SCP until they stay. With `fresh`, from the planes around the present SCP alone. True
-    /// if the SCP penetrates nothing.
-    fn settle(&mut self, solids: &Solids, hip: &Pose, fresh: bool) -> bool {
-        let mut free = false;
-        for round in 0..ROUNDS {
-            let there = Pose::new(hip.translation + self.shift, hip.rotation);
-            let (penetrates, changed) = self.look_around(solids, &there, fresh && round == 0);
-            free = !penetrates;
-            if !changed {
-                break;
-            }
-            self.projection.solve(&self.rows);
-            self.take_projection();
-        }
-        free
-    }
-
-    /// Replaces the planes of pairs that penetrate at the SCP's pose, and of pairs that hold it without touching it. Returns
-    /// whether anything penetrates and whether any plane was replaced.
-    fn look_around(&mut self, solids: &Solids, there: &Pose, all: bool) -> (bool, bool) {
-        self.around.step(there);
-        let placed = Placed::new(there);
-        let (mut penetrates, mut changed) = (false, all);
-        for i in 0..self.touches.len() {
-            let t = &self.touches[i];
-            let seen = |s: &Sensed| (s.part, s.piece) == (t.part, t.piece);
-            if t.push > 0.0 && !self.around.pairs.iter().any(seen) {
-                self.rows[i].offset = f64::NEG_INFINITY;
-                changed = true;
-            }
-        }
-        for k in 0..self.around.pairs.len() {
-            let s = self.around.pairs[k];
-            let known = self.touches.iter().position(|t| (t.part, t.piece) == (s.part, s.piece));
-            // One plane that holds is proof enough, though the tracker there may be on another side.
-            let held = |t: &Touch| t.plane.distance + t.plane.normal_w.dot(self.shift) >= -FREED;
-            let inside = s.near.distance < -FREED && !known.is_some_and(|i| held(&self.touches[i]));
-            let loose = s.near.distance > FREED && known.is_some_and(|i| self.touches[i].push > 0.0);
-            penetrates |= inside;
-            if !(inside || loose || all && known.is_none()) {
-                continue;
-            }
-            let (part, piece) = (s.part as usize, s.piece as usize);
-            let felt = solids.is_felt(part, piece, &placed, &s.near, Covered::Unfelt);
-            let plane = if felt {
-                Some(s.near)
-            } else {
-                solids.felt_plane(
-                    part,
-                    piece,
-                    &placed,
-                    &s.near,
-                    Covered::Felt,
-                    &mut self.hints[part * self.pieces + piece],
-                )
-            };
-            let plane = plane.map(|c| CFace { distance: c.distance - c.normal_w.dot(self.shift), ..c });
-            match (known, plane) {
-                (Some(i), Some(plane)) => {
-                    changed |=
-                        self.touches[i].plane.contact != plane.contact || self.rows[i].offset == f64::NEG_INFINITY;
-                    self.touches[i].plane = plane;
-                    self.rows[i] = row(&plane);
-                }
-                (None, Some(plane)) if self.touches.len() < self.touches.capacity() => {
-                    self.touch(solids, s.part, s.piece, plane);
-                    changed = true;
-                }
-                (Some(i), None) if loose => {
-                    self.rows[i].offset = f64::NEG_INFINITY;
-                    changed = true;
-                }
-                _ => {}
-            }
-        }
-        (penetrates, changed)
     }
 }
 

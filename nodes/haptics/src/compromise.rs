@@ -1,0 +1,99 @@
+//! Where planes leave no room between them: the point that they agree on best.
+
+use crate::projection::Row;
+use spatial::{DMat3, DVec3};
+
+/// How much more the square of a violation weighs than the square of the way.
+const WEIGHT: f64 = 100.0;
+/// Rounds of Newton's method, which needs one for each set of violated rows that it comes by.
+const ROUNDS: usize = 16;
+/// Rows whose normals (of length one) and offsets (metres) differ by less than this are one.
+const EQUAL: f64 = 1e-9;
+
+/// What the rows agree on best.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Compromise {
+    /// Where `|z|^2 + WEIGHT sum violation^2` is least; rows across each other that can be met are met.
+    pub z: DVec3,
+    least: DVec3,
+}
+
+impl Compromise {
+    /// Exists whatever the rows ask, and is continuous in them. Normals are of length one; equal rows count once.
+    pub fn of(rows: &[Row<3>]) -> Self {
+        let counts = |i: usize| !rows[..i].iter().any(|r| is_equal(r, &rows[i]));
+        let violated = |z: DVec3| {
+            let of_row = move |(i, r): (usize, &Row<3>)| (i, violation(r, z));
+            rows.iter().enumerate().map(of_row).filter(move |(i, v)| *v > 0.0 && counts(*i))
+        };
+        let cost = |z: DVec3| z.length_squared() + WEIGHT * violated(z).map(|(_, v)| v * v).sum::<f64>();
+        let mut least = DVec3::ZERO;
+        for _ in 0..ROUNDS {
+            let (mut h, mut g) = (DMat3::IDENTITY, DVec3::ZERO);
+            for (i, _) in violated(least) {
+                let n = DVec3::from_array(rows[i].normal);
+                h += DMat3::from_cols(n * n.x, n * n.y, n * n.z) * WEIGHT;
+                g += n * (WEIGHT * rows[i].offset);
+            }
+            let mut next = h.inverse() * g;
+            if cost(next) > cost(least) {
+                next = next.midpoint(least);
+            }
+            let way = next.distance(least);
+            least = next;
+            if way <= 1e-12 {
+                break;
+            }
+        }
+        Self { z: least * (1.0 + 1.0 / WEIGHT), least }
+    }
+
+    /// The row's multiplier: `z = sum multiplier_i normal_i`.
+    pub fn multiplier(&self, row: &Row<3>) -> f64 {
+        (WEIGHT + 1.0) * violation(row, self.least).max(0.0)
+    }
+}
+
+fn violation(row: &Row<3>, z: DVec3) -> f64 {
+    row.offset - DVec3::from_array(row.normal).dot(z)
+}
+
+fn is_equal(r: &Row<3>, s: &Row<3>) -> bool {
+    (r.offset - s.offset).abs() <= EQUAL
+        && DVec3::from_array(r.normal).distance_squared(DVec3::from_array(s.normal)) <= EQUAL * EQUAL
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(normal: DVec3, offset: f64) -> Row<3> {
+        Row { normal: normal.to_array(), offset, equality: false }
+    }
+
+    #[test]
+    fn between_walls_too_close_it_is_the_middle_and_on_the_floor() {
+        // Walls that ask for x >= 3 and x <= 1, one of them in two pieces; a floor; a ceiling that asks nothing.
+        let rows = [
+            row(DVec3::X, 3.0),
+            row(DVec3::NEG_X, -1.0),
+            row(DVec3::NEG_X, -1.0),
+            row(DVec3::Z, 0.5),
+            row(DVec3::NEG_Z, -9.0),
+        ];
+        let found = Compromise::of(&rows);
+        assert!((found.z - DVec3::new(2.0, 0.0, 0.5)).length() < 0.03, "{}", found.z);
+        assert!((found.z.z - 0.5).abs() < 1e-12 && found.z.y == 0.0);
+        let pushes = [0, 1, 3].map(|i| found.multiplier(&rows[i]));
+        assert!((pushes[0] - pushes[1] - found.z.x).abs() < 1e-9 && pushes.iter().all(|p| *p > 0.0), "{pushes:?}");
+        assert_eq!(found.multiplier(&rows[4]), 0.0);
+    }
+
+    #[test]
+    fn rows_across_each_other_are_met() {
+        let rows = [row(DVec3::X, 1e-3), row(DVec3::Y, 2e-3)];
+        let found = Compromise::of(&rows);
+        assert!((found.z - DVec3::new(1e-3, 2e-3, 0.0)).length() < 1e-15, "{}", found.z);
+        assert!((found.multiplier(&rows[1]) - 2e-3).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,159 @@
+//! Where planes near the hand do not tell the SCP: the search around, and what is felt where it leads nowhere.
+
+use super::{FAR, FREED, Scp, Touch, row};
+use crate::compromise::Compromise;
+use crate::placed::Placed;
+use crate::sense::Sensed;
+use crate::solid::{Covered, Solids};
+use cspace::CFace;
+use spatial::{DVec3, Pose};
+
+/// Rounds in which planes are taken anew at the SCP found.
+const ROUNDS: usize = 12;
+/// Most starts tried when the first leads nowhere, and looks around in one tick.
+const STARTS: usize = 5;
+const LOOKS: usize = 60;
+
+impl Scp {
+    /// The nearest touching configuration that a few starts lead to: the projection itself, the last SCP, and the foot on each
+    /// pair's plane alone. If all are far from the hand and from the last SCP, the parts are wedged at this orientation: then
+    /// what the planes near the hand agree on best, and false.
+    pub(super) fn refine(&mut self, solids: &Solids, hip: &Pose, depth: f64) -> bool {
+        if self.nearest.is_empty() {
+            self.nearest.extend_from_slice(&self.touches);
+        }
+        let near = FAR * depth;
+        // Parts that were wedged stay so until there is a way out near the hand.
+        let limit = if self.wedged { near } else { near.max(2.0 * self.size) };
+        self.looks = LOOKS;
+        self.best.clear();
+        let mut least = limit;
+        if self.settle(solids, hip, false, least) {
+            self.keep(&mut least);
+        }
+        let last = self.last.map(|p| p - hip.translation);
+        if least > near {
+            let foot = |t: &Touch| t.plane.normal_w * -t.plane.distance;
+            let mut starts = [DVec3::ZERO; STARTS];
+            let feet = self.nearest.iter().filter(|t| t.plane.distance < 0.0).map(foot);
+            let count = starts.iter_mut().zip(last.into_iter().chain(feet)).map(|(to, from)| *to = from).count();
+            for start in &starts[..count] {
+                self.touches.clear();
+                self.rows.clear();
+                self.shift = *start;
+                if self.settle(solids, hip, true, least) {
+                    self.keep(&mut least);
+                }
+            }
+        }
+        std::mem::swap(&mut self.touches, &mut self.best);
+        self.shift = self.touches.iter().map(|t| t.plane.normal_w * t.push).sum();
+        let follows = last.is_none_or(|p| !self.wedged && self.shift.distance(p) <= near);
+        let found = !self.touches.is_empty() && (least <= near || follows);
+        if !found {
+            self.give_way(near);
+        }
+        found
+    }
+
+    /// The SCP becomes what the planes near the hand agree on best, no farther away than `limit`, metres.
+    fn give_way(&mut self, limit: f64) {
+        std::mem::swap(&mut self.touches, &mut self.nearest);
+        self.rows.clear();
+        self.rows.extend(self.touches.iter().map(|t| row(&t.plane)));
+        let found = Compromise::of(&self.rows);
+        self.shift = found.z.clamp_length_max(limit);
+        for (t, r) in self.touches.iter_mut().zip(&self.rows) {
+            // What opposite planes ask for beyond their depths is the weight's, and no share of the force.
+            t.push = found.multiplier(r).min(-t.plane.distance).max(0.0);
+        }
+    }
+
+    fn keep(&mut self, least: &mut f64) {
+        if self.shift.length() < *least {
+            *least = self.shift.length();
+            std::mem::swap(&mut self.touches, &mut self.best);
+        }
+    }
+
+    /// Takes the planes anew at the SCP until they stay. With `fresh`, from the planes around the present SCP alone. True
+    /// if the SCP penetrates nothing and is no farther than `limit`, metres.
+    fn settle(&mut self, solids: &Solids, hip: &Pose, fresh: bool, limit: f64) -> bool {
+        let mut fresh = fresh;
+        for _ in 0..ROUNDS {
+            if self.looks == 0 || self.shift.length() > limit {
+                return false;
+            }
+            self.looks -= 1;
+            let there = Pose::new(hip.translation + self.shift, hip.rotation);
+            let (penetrates, changed) = self.look_around(solids, &there, std::mem::take(&mut fresh));
+            if !changed {
+                return !penetrates;
+            }
+            self.projection.solve(&self.rows);
+            self.take_projection();
+        }
+        false
+    }
+
+    /// Replaces the planes of pairs that penetrate at the SCP's pose, and of pairs that hold it without touching it. Returns
+    /// whether anything penetrates and whether any plane was replaced.
+    fn look_around(&mut self, solids: &Solids, there: &Pose, all: bool) -> (bool, bool) {
+        self.around.step(there);
+        let placed = Placed::new(there);
+        let (mut penetrates, mut changed) = (false, all);
+        for i in 0..self.touches.len() {
+            let t = &self.touches[i];
+            let seen = |s: &Sensed| (s.part, s.piece) == (t.part, t.piece);
+            if t.push > 0.0 && !self.around.pairs.iter().any(seen) {
+                self.rows[i].offset = f64::NEG_INFINITY;
+                changed = true;
+            }
+        }
+        for k in 0..self.around.pairs.len() {
+            let s = self.around.pairs[k];
+            let known = self.touches.iter().position(|t| (t.part, t.piece) == (s.part, s.piece));
+            // One plane that holds is proof enough, though the tracker there may be on another side.
+            let held = |t: &Touch| t.plane.distance + t.plane.normal_w.dot(self.shift) >= -FREED;
+            let inside = s.near.distance < -FREED && !known.is_some_and(|i| held(&self.touches[i]));
+            let loose = s.near.distance > FREED && known.is_some_and(|i| self.touches[i].push > 0.0);
+            penetrates |= inside;
+            if !(inside || loose || all && known.is_none()) {
+                continue;
+            }
+            let (part, piece) = (s.part as usize, s.piece as usize);
+            let felt = solids.is_felt(part, piece, &placed, &s.near, Covered::Unfelt);
+            let plane = if felt {
+                Some(s.near)
+            } else {
+                solids.felt_plane(
+                    part,
+                    piece,
+                    &placed,
+                    &s.near,
+                    Covered::Felt,
+                    &mut self.hints[part * self.pieces + piece],
+                )
+            };
+            let plane = plane.map(|c| CFace { distance: c.distance - c.normal_w.dot(self.shift), ..c });
+            match (known, plane) {
+                (Some(i), Some(plane)) => {
+                    changed |=
+                        self.touches[i].plane.contact != plane.contact || self.rows[i].offset == f64::NEG_INFINITY;
+                    self.touches[i].plane = plane;
+                    self.rows[i] = row(&plane);
+                }
+                (None, Some(plane)) if self.touches.len() < self.touches.capacity() => {
+                    self.touch(solids, s.part, s.piece, plane);
+                    changed = true;
+                }
+                (Some(i), None) if loose => {
+                    self.rows[i].offset = f64::NEG_INFINITY;
+                    changed = true;
+                }
+                _ => {}
+            }
+        }
+        (penetrates, changed)
+    }
+}
