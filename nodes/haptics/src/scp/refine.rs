@@ -12,7 +12,7 @@ use spatial::{DVec3, Pose};
 const ROUNDS: usize = 12;
 /// Most starts tried when the first leads nowhere, and looks around in one tick.
 const STARTS: usize = 5;
-const LOOKS: usize = 60;
+const LOOKS: usize = 16;
 
 impl Scp {
     /// The nearest touching configuration that a few starts lead to: the projection itself, the last SCP, and the foot on each
