@@ -193,7 +193,9 @@ impl Scp {
             self.take_projection();
             self.wedged = !self.is_plain(solids, placed, depth) && !self.refine(solids, hip, depth);
             if !self.wedged {
+                let depth = self.depth_of_touches();
                 self.begin_to_hold(solids, pairs, hip, placed, depth);
+                return depth;
             }
         }
         depth

@@ -18,26 +18,42 @@ pub struct Case {
     /// How far it has turned the peg there, rotation vector, radians.
     turn: DVec3,
     seated: bool,
-    /// In the hole of four walls and a bottom, or in the corner that two cut walls and a bottom make.
-    hole: bool,
+    surroundings: Surroundings,
 }
 
-/// `free` hovers. `corner` pushes to the bottom and into a corner, 0.2 mm deep, so that the peg leans on two walls and the
+/// What stands there.
+#[derive(Clone, Copy)]
+enum Surroundings {
+    /// The hole of four walls and a bottom.
+    Hole,
+    /// The corner that two cut walls and a bottom make.
+    Corner,
+    /// A plate of one piece, where the hole's bottom is.
+    Plate,
+}
+
+/// `free` hovers. `plate` pushes 0.2 mm into a plate, the only obstacle. `corner` pushes to the bottom and into a corner, 0.2 mm deep, so that the peg leans on two walls and the
 /// bottom. `five` does the same in a corner of five pieces, two to a wall: the hand is inside of all of them, and the
 /// proxy touches three to five. `jammed` also turns the peg about the vertical and about an edge, farther than the
 /// hole's clearance lets it: the proxy stands against all four walls and the bottom, five pieces at once.
-pub const CASES: [Case; 4] = [
-    Case { name: "free", place: DVec3::new(0.0, 0.0, 0.03), turn: DVec3::ZERO, seated: false, hole: true },
-    Case { name: "corner", place: DVec3::new(2e-4, 1.5e-4, 0.0058), turn: DVec3::ZERO, seated: true, hole: true },
-    Case { name: "five", place: DVec3::new(2e-4, 1.5e-4, 0.0058), turn: DVec3::ZERO, seated: true, hole: false },
+pub const CASES: [Case; 5] = [
+    pressed("free", DVec3::new(0.0, 0.0, 0.03), false, Surroundings::Hole),
+    pressed("plate", DVec3::new(2e-4, 1.5e-4, 0.0058), true, Surroundings::Plate),
+    pressed("corner", DVec3::new(2e-4, 1.5e-4, 0.0058), true, Surroundings::Hole),
+    pressed("five", DVec3::new(2e-4, 1.5e-4, 0.0058), true, Surroundings::Corner),
     Case {
         name: "jammed",
         place: DVec3::new(0.0, 0.0, 0.0055),
         turn: DVec3::new(0.0, 0.05, 0.06),
         seated: true,
-        hole: true,
+        surroundings: Surroundings::Hole,
     },
 ];
+
+/// A case without a turn.
+const fn pressed(name: &'static str, place: DVec3, seated: bool, surroundings: Surroundings) -> Case {
+    Case { name, place, turn: DVec3::ZERO, seated, surroundings }
+}
 
 pub const LAWS: [LawKind; 4] = [LawKind::Paper, LawKind::Pstar, LawKind::Blended, LawKind::Proxy];
 
@@ -53,7 +69,17 @@ fn input(i: u64, pose: Pose, law: LawKind) -> TickInput {
 
 /// A tick that has been led to the case's place through the mouth of the hole, as a hand would have brought the part.
 pub fn led_there(case: &Case, law: LawKind) -> Tick {
-    let world = if case.hole { peg_in_hole() } else { corner_of_five() };
+    let world = match case.surroundings {
+        Surroundings::Hole => peg_in_hole(),
+        Surroundings::Corner => among_boxes(&[
+            ([8.125, -25.0, -9.0], [30.0, 0.0, 0.0]),
+            ([8.125, 0.0, -9.0], [30.0, 25.0, 0.0]),
+            ([-30.0, 5.105, -9.0], [0.0, 25.0, 0.0]),
+            ([0.0, 5.105, -9.0], [8.125, 25.0, 0.0]),
+            ([-30.0, -25.0, -14.0], [30.0, 25.0, -9.0]),
+        ]),
+        Surroundings::Plate => among_boxes(&[([-30.0, -25.0, -14.0], [30.0, 25.0, -9.0])]),
+    };
     let mut tick = Tick::with_law(Box::new(Renderer::new(world)), &Config::default());
     let start = DVec3::Z * 0.03;
     for i in 0..WAY {
@@ -87,18 +113,11 @@ fn peg_in_hole() -> Arc<World> {
     Scene::load(&path).expect("the repository's scene").world
 }
 
-/// The same peg and place, but of the hole only the two walls that it is pushed against, each cut in two, and the bottom.
-fn corner_of_five() -> Arc<World> {
-    let boxes = [
-        ([8.125, -25.0, -9.0], [30.0, 0.0, 0.0]),
-        ([8.125, 0.0, -9.0], [30.0, 25.0, 0.0]),
-        ([-30.0, 5.105, -9.0], [0.0, 25.0, 0.0]),
-        ([0.0, 5.105, -9.0], [8.125, 25.0, 0.0]),
-        ([-30.0, -25.0, -14.0], [30.0, 25.0, -9.0]),
-    ];
-    let fixed = boxes.map(|(low, high)| FixedPart { polyhedron: Arc::new(cuboid(low, high)), obstacle: 0 });
-    let moving = vec![Arc::new(cuboid([-8.0, -5.0, -15.0], [8.0, 5.0, 15.0]))];
-    Arc::new(World { moving, fixed: fixed.to_vec() })
+/// The same peg among boxes, each given by two corners, millimetres.
+fn among_boxes(boxes: &[([f64; 3], [f64; 3])]) -> Arc<World> {
+    let fixed =
+        boxes.iter().map(|(low, high)| FixedPart { polyhedron: Arc::new(cuboid(*low, *high)), obstacle: 0 }).collect();
+    Arc::new(World { moving: vec![Arc::new(cuboid([-8.0, -5.0, -15.0], [8.0, 5.0, 15.0]))], fixed })
 }
 
 /// A box between two corners, millimetres.
