@@ -41,6 +41,13 @@ pub(crate) struct Touch {
     pub push: f64,
 }
 
+/// A penetrating pair whose nearest plane is a seam, and its nearest felt plane once that has been looked for.
+#[derive(Clone, Copy, Debug)]
+struct Unfelt {
+    pair: Sensed,
+    plane: Option<Option<CFace>>,
+}
+
 /// Finds the SCP: corners by projection, `argmin |p - x0|^2` with p on the free side of one plane per pair.
 ///
 /// Planes near the hand decide. Where obstacles crowd, these may ask too much (planes that meet far beyond their
@@ -53,8 +60,7 @@ pub(crate) struct Scp {
     /// The planes nearest to the hand, if others were taken since.
     nearest: Vec<Touch>,
     rows: Vec<Row<3>>,
-    /// Penetrating pairs whose nearest plane is a seam.
-    unfelt: Vec<Sensed>,
+    unfelt: Vec<Unfelt>,
     projection: Projection<3>,
     shift: DVec3,
     /// For each pair the plane last felt where Near is a seam.
@@ -266,7 +272,7 @@ impl Scp {
             if solids.is_felt(s.part as usize, s.piece as usize, placed, &s.near, Covered::Unfelt) {
                 self.touch(solids, s.part, s.piece, s.near);
             } else if s.near.distance < 0.0 {
-                self.unfelt.push(*s);
+                self.unfelt.push(Unfelt { pair: *s, plane: None });
             }
         }
         if self.unfelt.is_empty() && depth_alone {
@@ -282,34 +288,37 @@ impl Scp {
     }
 
     /// A pair whose nearest plane is a seam needs a felt plane of its own only where the others do not free it anyway: one
-    /// plane with `f >= 0` at the SCP, felt or not, proves freedom.
+    /// plane with `f >= 0` at the SCP, felt or not, proves freedom. Those whose felt plane lies least behind the seam come first:
+    /// what they leave to the others is freed rather than pushed out on a far side.
     fn add_unfelt(&mut self, solids: &Solids, placed: &Placed) {
-        for k in 0..self.unfelt.len() {
-            let s = self.unfelt[k];
-            let (part, piece) = (s.part as usize, s.piece as usize);
-            let shift = DVec3::from_array(self.projection.z);
+        loop {
+            let Self { unfelt, hints, projection, pieces, .. } = self;
+            let shift = DVec3::from_array(projection.z);
             let freed = |c: &CFace| c.distance + c.normal_w.dot(shift) >= -FREED;
-            if freed(&s.near) {
+            let mut next = None;
+            let mut least = f64::INFINITY;
+            for (k, u) in unfelt.iter_mut().enumerate().filter(|(_, u)| !freed(&u.pair.near)) {
+                let (part, piece) = (u.pair.part as usize, u.pair.piece as usize);
+                let hint = &mut hints[part * *pieces + piece];
+                let mut find = || solids.felt_plane(part, piece, placed, &u.pair.near, Covered::Felt, hint);
+                if let Some(plane) = *u.plane.get_or_insert_with(&mut find)
+                    && u.pair.near.distance - plane.distance < least
+                {
+                    least = u.pair.near.distance - plane.distance;
+                    next = Some((k, plane));
+                }
+            }
+            let Some((k, plane)) = next else { return };
+            let Sensed { part, piece, .. } = unfelt.swap_remove(k).pair;
+            // An equal plane adds nothing to the force, but its contacts belong to the region.
+            let again = !freed(&plane);
+            // Near may be a joint that the way out runs along; then the plane of any face is proof as well.
+            if again && solids.a_face_parts(part as usize, piece as usize, &placed.shifted(shift), FREED) {
                 continue;
             }
-            if let Some(plane) = solids.felt_plane(
-                part,
-                piece,
-                placed,
-                &s.near,
-                Covered::Felt,
-                &mut self.hints[part * self.pieces + piece],
-            ) {
-                // An equal plane adds nothing to the force, but its contacts belong to the region.
-                let again = !freed(&plane);
-                // Near may be a joint that the way out runs along; then the plane of any face is proof as well.
-                if again && solids.a_face_parts(part, piece, &placed.shifted(shift), FREED) {
-                    continue;
-                }
-                self.touch(solids, s.part, s.piece, plane);
-                if again {
-                    self.projection.solve(&self.rows);
-                }
+            self.touch(solids, part, piece, plane);
+            if again {
+                self.projection.solve(&self.rows);
             }
         }
     }

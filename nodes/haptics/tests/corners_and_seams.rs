@@ -266,3 +266,43 @@ fn cut_box_on_a_cut_floor_beside_a_wall_feels_like_the_whole_ones() {
         }
     }
 }
+
+/// Where a vertex crosses a joint close to one of its own body, the nearest planes of all pairs are seams at once.
+#[test]
+fn cut_part_that_tumbles_over_tiles_feels_like_the_whole_ones() {
+    let part = |from: f64, to: f64| Arc::new(cuboid(mm(from, -9.0, -6.0), mm(to, 9.0, 6.0)));
+    let build = |moving: Vec<Arc<Polyhedron>>, fixed: Vec<Polyhedron>| {
+        let piece = |p| FixedPart { polyhedron: Arc::new(p), obstacle: 0 };
+        Arc::new(World { moving, fixed: fixed.into_iter().map(piece).collect() })
+    };
+    let floor = || vec![cuboid(mm(-40.0, -40.0, -20.0), mm(40.0, 40.0, 0.0))];
+    for seed in 1..=10 {
+        let mut rng = support::random::rng(seed);
+        let at = rng.random_range(10.0..12.9);
+        let whole = build(vec![part(-13.0, 13.0)], floor());
+        let cut = build(vec![part(-13.0, at), part(at, 13.0)], tiles(seed, 5));
+        let corners: Vec<DVec3> = whole.moving[0].vertices().to_vec();
+        let mut any = || DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
+        let (start, turn, sway) = (3.0 * any(), 1.5 * any(), 10.0 * any());
+        let (mut a, mut b) = (Renderer::new(whole), Renderer::new(cut));
+        for tick in 0..1500 {
+            let s = f64::from(tick) / 1499.0;
+            let rotation = DQuat::from_scaled_axis(start + turn * s);
+            let lowest = corners.iter().map(|c| (rotation * *c).z).fold(f64::INFINITY, f64::min);
+            let over = 0.012 * DVec2::new((sway.x * s).sin(), (sway.y * s).cos());
+            let hand = Pose::new(over.extend(-lowest - 8e-4), rotation);
+            let expected = a.render(&hand, &gains(LawKind::Paper), 1e-3);
+            let found = b.render(&hand, &gains(LawKind::Paper), 1e-3);
+            let (df, dd) =
+                ((found.wrench.force - expected.wrench.force).length(), (found.depth - expected.depth).abs());
+            assert!(
+                df < 1e-6 && dd < 1e-9,
+                "seed {seed} tick {tick}: force {} for {}, depth {} for {}",
+                found.wrench.force,
+                expected.wrench.force,
+                found.depth,
+                expected.depth
+            );
+        }
+    }
+}
