@@ -203,6 +203,7 @@ impl Scp {
                 self.begin_to_hold(solids, pairs, hip, placed, depth);
                 return depth;
             }
+            self.hold_wedged(pairs, hip, depth);
         }
         depth
     }

@@ -223,6 +223,41 @@ fn floor_cut_into_pieces_feels_like_the_whole_floor() {
     }
 }
 
+/// The tip alone touches, and the nearest planes of all pairs are seams: of the tip's part the floor's joint, of the other part
+/// the floor under a corner that only the cut made. The tip's way out frees both.
+#[test]
+fn the_tip_of_a_cut_part_over_a_joint_pushes_straight_up() {
+    let hull = |points: &[[f64; 3]]| {
+        Arc::new(support::random::hull(&points.iter().map(|p| mm(p[0], p[1], p[2])).collect::<Vec<_>>()))
+    };
+    // A tip at the origin below a slab that lies to its left, cut 0.75 mm to the left of the tip.
+    let right = |x: f64| [[x, 10.0 * x / 20.0, -0.5 * x], [x, -10.0 * x / 20.0, -0.5 * x]];
+    let (low, high) = (right(-0.75), [[-0.75, 7.5, 7.5], [-0.75, -7.5, 7.5]]);
+    let left = [
+        low[0],
+        low[1],
+        high[0],
+        high[1],
+        [-20.0, 10.0, 10.0],
+        [-20.0, -10.0, 10.0],
+        [-1.0, 10.0, 10.0],
+        [-1.0, -10.0, 10.0],
+    ];
+    let tip = [low[0], low[1], high[0], high[1], [0.0, 0.0, 0.0]];
+    let floor = |x: [f64; 2]| Arc::new(cuboid(mm(x[0], -60.0, -20.0), mm(x[1], 60.0, 0.0)));
+    let fixed = [[-60.0, 0.0], [0.0, 60.0]].map(|x| FixedPart { polyhedron: floor(x), obstacle: 0 });
+    let w = Arc::new(World { moving: vec![hull(&left), hull(&tip)], fixed: fixed.to_vec() });
+    for law in LAWS {
+        let mut r = Renderer::new(w.clone());
+        for i in 0..=100 {
+            let depth = 0.8 * f64::from(i) / 100.0;
+            let force = r.render(&pose(0.71, 0.3, -depth, 0.0, 0.0, 0.0), &gains(law), 1e-3).wrench.force;
+            let off = if law == LawKind::Proxy { force.with_z(0.0) } else { force - DVec3::Z * depth };
+            assert!(off.length() < 1e-6 && force.z <= depth + 1e-6, "{law:?}, {depth} mm: {force}");
+        }
+    }
+}
+
 /// Ticks 105 to 107 once gave five times the force: the nearest plane of the part's rear half to the floor's right half is a
 /// joint there, and the way out runs along it.
 #[test]

@@ -16,6 +16,8 @@ pub(super) struct Held {
     at: Pose,
     /// Square of the way that a point of the part may have moved, metres squared.
     room2: f64,
+    /// Pairs that penetrated there.
+    inside: usize,
 }
 
 impl Held {
@@ -46,7 +48,17 @@ impl Scp {
             }
             by_face || by_choice
         };
-        self.held = (!self.touches.iter().any(is_rivalled)).then_some(Held { at: *hip, room2: room * room });
+        self.held = (!self.touches.iter().any(is_rivalled)).then_some(Held {
+            at: *hip,
+            room2: room * room,
+            inside: inside(pairs),
+        });
+    }
+
+    /// Lets the planes between which the part is wedged be held while the hand stays within [`ROOM`].
+    pub(super) fn hold_wedged(&mut self, pairs: &[Sensed], hip: &Pose, depth: f64) {
+        let room = ROOM * depth;
+        self.held = Some(Held { at: *hip, room2: room * room, inside: inside(pairs) });
     }
 
     /// The depth and, in `touches`, the planes that hold the SCP if those of the last tick still do: each takes place where the
@@ -56,23 +68,20 @@ impl Scp {
     /// around. That no edge contact elsewhere has become nearer is taken for granted within [`ROOM`].
     pub(super) fn hold(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> Option<f64> {
         let held = self.held.take().filter(|h| h.reaches(hip, self.lever))?;
-        let is_felt = |s: &Sensed, covered| solids.is_felt(s.part as usize, s.piece as usize, placed, &s.near, covered);
-        self.rows.clear();
-        for t in &mut self.touches {
-            let s = pairs.iter().find(|s| (s.part, s.piece) == (t.part, t.piece))?;
-            // A nearest plane that is felt is the one to hold.
-            let is_near = s.near.contact == t.plane.contact;
-            if is_felt(s, if is_near { Covered::Felt } else { Covered::Unfelt }) != is_near {
+        if self.wedged {
+            self.take_nearest();
+        }
+        self.take_along(solids, pairs, placed)?;
+        if self.wedged {
+            let depth = self.depth_of_touches();
+            if !(depth > 0.0) || inside(pairs) != held.inside {
                 return None;
             }
-            t.plane = if is_near {
-                s.near
-            } else {
-                solids.applicable_plane(t.part as usize, t.piece as usize, placed, t.plane.contact)?
-            };
-            (t.first, t.end, t.tie) = (0, 0, tie_of(solids, t.part));
-            self.rows.push(row(&t.plane));
+            self.give_way(FAR * depth);
+            self.held = Some(held);
+            return Some(depth);
         }
+        let is_felt = |s: &Sensed, covered| solids.is_felt(s.part as usize, s.piece as usize, placed, &s.near, covered);
         self.projection.solve_again(&self.rows);
         if self.projection.contradictions > 0 {
             return None;
@@ -94,4 +103,27 @@ impl Scp {
         self.held = Some(held);
         Some(depth)
     }
+
+    /// The same planes at this pose; none if one of them is no longer the felt one.
+    fn take_along(&mut self, solids: &Solids, pairs: &[Sensed], placed: &Placed) -> Option<()> {
+        self.rows.clear();
+        for t in &mut self.touches {
+            let s = pairs.iter().find(|s| (s.part, s.piece) == (t.part, t.piece))?;
+            let (part, piece) = (t.part as usize, t.piece as usize);
+            // A nearest plane that is felt is the one to hold.
+            let is_near = s.near.contact == t.plane.contact;
+            let covered = if is_near { Covered::Felt } else { Covered::Unfelt };
+            if solids.is_felt(part, piece, placed, &s.near, covered) != is_near {
+                return None;
+            }
+            t.plane = if is_near { s.near } else { solids.applicable_plane(part, piece, placed, t.plane.contact)? };
+            (t.first, t.end, t.tie) = (0, 0, tie_of(solids, t.part));
+            self.rows.push(row(&t.plane));
+        }
+        Some(())
+    }
+}
+
+fn inside(pairs: &[Sensed]) -> usize {
+    pairs.iter().filter(|s| s.near.distance < 0.0).count()
 }

@@ -51,14 +51,20 @@ impl Scp {
         let follows = last.is_none_or(|p| !self.wedged && self.shift.distance(p) <= near);
         let found = !self.touches.is_empty() && (least <= near || follows);
         if !found {
+            self.take_nearest();
             self.give_way(near);
         }
         found
     }
 
-    /// The SCP becomes what the planes near the hand agree on best, no farther away than `limit`, metres.
-    fn give_way(&mut self, limit: f64) {
-        std::mem::swap(&mut self.touches, &mut self.nearest);
+    /// Takes the planes nearest to the hand.
+    pub(super) fn take_nearest(&mut self) {
+        self.touches.clear();
+        self.touches.extend_from_slice(&self.nearest);
+    }
+
+    /// The SCP becomes what the planes agree on best, no farther away than `limit`, metres.
+    pub(super) fn give_way(&mut self, limit: f64) {
         self.rows.clear();
         self.rows.extend(self.touches.iter().map(|t| row(&t.plane)));
         let found = Compromise::of(&self.rows);
