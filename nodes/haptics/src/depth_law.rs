@@ -10,6 +10,7 @@ use crate::sense::Sensed;
 use crate::shares::Shares;
 use crate::solid::Solids;
 use crate::{ContactFormation, ContactPoint, FormationKind, Gains, LawKind};
+use cspace::{BasicContact, contact_point_turned};
 use spatial::{DVec3, Pose, Wrench};
 
 /// Planes are one constraint when their normals differ by less than this (radians) and their offsets by this part of the part's size.
@@ -124,12 +125,19 @@ impl DepthLaw {
                 self.clipper.region(solids, part, piece, placed, &t.plane, &scope, &mut self.points);
             }
             t.end = self.points.len();
+        }
+        self.stand_in(solids, placed);
+        for t in &self.scp.touches {
+            let points = &self.points[t.first..t.end];
             self.places.clear();
-            self.places.extend(self.points[t.first..t.end].iter().map(|p| p.point_w));
+            self.places.extend(points.iter().map(|p| p.point_w));
             let kind = FormationKind::of(&self.places, t.plane.normal_w, t.plane.contact);
+            if points.is_empty() {
+                continue;
+            }
             self.multiple |= kind >= FormationKind::EdgeFace;
             result.formation.kind = result.formation.kind.max(kind);
-            for p in &self.points[t.first..t.end] {
+            for p in points {
                 let kept = result.formation.push(ContactPoint {
                     part_a: t.part,
                     piece_b: t.piece,
@@ -140,6 +148,26 @@ impl DepthLaw {
                     kind,
                 });
                 result.dropped += u32::from(!kept);
+            }
+        }
+    }
+
+    /// Gives a plane that pushes, but has no contact where the hand is, its own: it takes place at the SCP, and the hand may be
+    /// beyond the end of the piece.
+    fn stand_in(&mut self, solids: &Solids, placed: &Placed) {
+        let touches = &mut self.scp.touches;
+        for i in 0..touches.len() {
+            let t = touches[i];
+            if t.push > 0.0 && !touches.iter().any(|u| u.first < u.end && is_equal(&t, u)) {
+                let (a, b) = (solids.part(t.part as usize), solids.piece(t.piece as usize));
+                let at = contact_point_turned(t.plane.contact, a, b, placed.x, &placed.r);
+                let on_b = match t.plane.contact {
+                    BasicContact::TypeB { .. } => at - t.plane.normal_w * t.plane.distance,
+                    _ => at,
+                };
+                touches[i].first = self.points.len();
+                self.points.push(RegionPoint::of(&t.plane, on_b));
+                touches[i].end = self.points.len();
             }
         }
     }
@@ -165,10 +193,7 @@ impl DepthLaw {
         self.weights.clear();
         let fade = if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
         for (j, u) in self.scp.touches.iter().enumerate() {
-            let equal = i == j
-                || (u.plane.normal_w - normal).length() <= EQUAL
-                    && (u.plane.distance - t.plane.distance).abs() <= EQUAL * t.tie / TIED;
-            if !equal {
+            if i != j && !is_equal(&t, u) {
                 continue;
             }
             let beside: &[RegionPoint] = if i == j { &self.beside } else { &[] };
@@ -198,4 +223,10 @@ impl DepthLaw {
         let p = nearest_point(&self.places, &self.weights, &mut self.order, x0);
         force.cross(x0 - p)
     }
+}
+
+/// Whether two planes are one constraint.
+fn is_equal(t: &Touch, u: &Touch) -> bool {
+    (u.plane.normal_w - t.plane.normal_w).length() <= EQUAL
+        && (u.plane.distance - t.plane.distance).abs() <= EQUAL * t.tie / TIED
 }

@@ -41,7 +41,7 @@ pub(crate) fn lone_contact(
             (stands(a, edge_a, on_a) && stands(b, edge_b, at)).then_some(at)?
         }
     };
-    Some(RegionPoint { contact: near.contact, point_w, normal_w: near.normal_w, gap: near.distance })
+    Some(RegionPoint::of(near, point_w))
 }
 
 /// Beyond this distance from the vertex, metres, the body lies more than twice `within` above it; none if a neighbour does not.

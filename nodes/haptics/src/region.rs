@@ -21,6 +21,11 @@ pub(crate) struct RegionPoint {
 }
 
 impl RegionPoint {
+    /// The contact of a plane itself, at `point_w` on B.
+    pub fn of(plane: &CFace, point_w: DVec3) -> Self {
+        Self { contact: plane.contact, point_w, normal_w: plane.normal_w, gap: plane.distance }
+    }
+
     /// A crossing of edges (unit directions, axes of W) whose place on A has moved by `motion`: the place slides along B's edge,
     /// the normal stays across both. One that has the face's normal keeps it.
     pub fn follow_crossing(&mut self, along_a: DVec3, along_b: DVec3, motion: DVec3) {
@@ -133,9 +138,7 @@ impl Clipper {
         // Near's own contact first, at its exact place, when its features face each other.
         let own = if scope.near_felt { facing_point(a, b, placed, near, 1e3 * same) } else { None };
         if let Some(point_w) = own.filter(|_| near.distance <= scope.reach) {
-            let (gap, normal_w) = (near.distance, near.normal_w);
-            let own = RegionPoint { contact: near.contact, point_w, normal_w, gap };
-            push(own, same, [first; 2], out);
+            push(RegionPoint::of(near, point_w), same, [first; 2], out);
         }
         self.pairs.clear();
         if scope.wide {

@@ -18,6 +18,8 @@ use spatial::{DVec3, Pose};
 pub(crate) const TIED: f64 = 1e-6;
 /// A pair is free of the SCP when its plane is violated by no more than this, metres; and touches up to as much above it.
 const FREED: f64 = 1e-9;
+/// A felt plane that lies no more than this part of the depth behind its seam is taken without a look at others.
+const CLOSE: f64 = 0.1;
 /// Normals that differ by less than this, radians, are one wall's.
 const PARALLEL: f64 = 1e-12;
 /// Another plane of a pair is taken where the square of the way to the SCP becomes less than this part of it.
@@ -281,6 +283,9 @@ impl Scp {
         }
         self.projection.solve(&self.rows);
         self.add_unfelt(solids, placed);
+        if !depth_alone {
+            self.add_beside(solids, placed);
+        }
         self.depth_of_touches()
     }
 
@@ -289,8 +294,8 @@ impl Scp {
     }
 
     /// A pair whose nearest plane is a seam needs a felt plane of its own only where the others do not free it anyway: one
-    /// plane with `f >= 0` at the SCP, felt or not, proves freedom. Those whose felt plane lies least behind the seam come first:
-    /// what they leave to the others is freed rather than pushed out on a far side.
+    /// plane with `f >= 0` at the SCP, felt or not, proves freedom. Those whose felt plane lies close behind the seam come first,
+    /// then those where it lies least behind: the others may then be free rather than pushed out on a far side.
     fn add_unfelt(&mut self, solids: &Solids, placed: &Placed) {
         loop {
             let Self { unfelt, hints, projection, pieces, .. } = self;
@@ -307,9 +312,12 @@ impl Scp {
                 {
                     least = u.pair.near.distance - plane.distance;
                     next = Some((k, plane));
+                    if least <= -CLOSE * u.pair.near.distance {
+                        break;
+                    }
                 }
             }
-            let Some((k, plane)) = next else { return };
+            let Some((k, plane)) = next else { break };
             let Sensed { part, piece, .. } = unfelt.swap_remove(k).pair;
             // An equal plane adds nothing to the force, but its contacts belong to the region.
             let again = !freed(&plane);
@@ -320,6 +328,24 @@ impl Scp {
             self.touch(solids, part, piece, plane);
             if again {
                 self.projection.solve(&self.rows);
+            }
+        }
+    }
+
+    /// Adds the pairs that the others free, but that touch at the SCP all the same: their contacts belong to the region.
+    fn add_beside(&mut self, solids: &Solids, placed: &Placed) {
+        let shift = DVec3::from_array(self.projection.z);
+        for k in 0..self.unfelt.len() {
+            let Sensed { part, piece, near } = self.unfelt[k].pair;
+            let touches =
+                |c: &CFace| (-FREED..=4.0 * tie_of(solids, part)).contains(&(c.distance + c.normal_w.dot(shift)));
+            if touches(&near) {
+                let (part, piece) = (part as usize, piece as usize);
+                let hint = &mut self.hints[part * self.pieces + piece];
+                let plane = solids.felt_plane(part, piece, placed, &near, Covered::Felt, hint);
+                if let Some(plane) = plane.filter(touches) {
+                    self.touch(solids, part as u32, piece as u32, plane);
+                }
             }
         }
     }

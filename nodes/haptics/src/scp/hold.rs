@@ -1,6 +1,6 @@
 //! From tick to tick the same planes hold the SCP nearly always: then there is nothing to search.
 
-use super::{FAR, FREED, Scp, Touch, row, tie_of};
+use super::{FAR, Scp, Touch, row, tie_of};
 use crate::placed::Placed;
 use crate::renderer::SCP_MARGIN;
 use crate::sense::Sensed;
@@ -93,9 +93,7 @@ impl Scp {
         }
         let is_apart = |s: &Sensed| {
             let left = s.near.distance + s.near.normal_w.dot(shift);
-            left > 4.0 * tie_of(solids, s.part)
-                || self.touches.iter().any(|t| (t.part, t.piece) == (s.part, s.piece))
-                || left >= -FREED && !is_felt(s, Covered::Unfelt)
+            left > 4.0 * tie_of(solids, s.part) || self.touches.iter().any(|t| (t.part, t.piece) == (s.part, s.piece))
         };
         if !pairs.iter().all(is_apart) || !self.takes_place(solids, &placed.shifted(shift)) {
             return None;

@@ -1,0 +1,116 @@
+//! A body cut into pieces feels like the whole one, whatever the cuts.
+
+mod support;
+
+use cspace::{FixedPart, Polyhedron, World};
+use glam::DVec2;
+use haptics::{Gains, LawKind, RenderLaw, Renderer};
+use rand::RngExt;
+use spatial::{DQuat, DVec3, Pose};
+use std::sync::Arc;
+use support::cuboid;
+use support::random::{Rng, rng};
+
+const LAWS: [LawKind; 4] = [LawKind::Paper, LawKind::Pstar, LawKind::Blended, LawKind::Proxy];
+/// Worlds of each kind, and ticks in each. (The same holds for thousands of worlds.)
+const SEEDS: u64 = 60;
+const TICKS: u32 = 300;
+/// Where the wall stands, metres.
+const WALL: f64 = 0.02;
+
+/// A box (millimetres) cut into `n` at random places across the given axes; some of the pieces overlap.
+fn cut(rng: &mut Rng, [low, high]: [DVec3; 2], n: usize, axes: &[usize]) -> Vec<Polyhedron> {
+    let mut boxes = vec![[low, high]];
+    while boxes.len() < n {
+        let [l, h] = boxes.swap_remove(rng.random_range(0..boxes.len()));
+        let axis = axes[rng.random_range(0..axes.len())];
+        let at = l[axis] + (h[axis] - l[axis]) * rng.random_range(0.1..0.9);
+        let (mut below, mut above) = (h, l);
+        (below[axis], above[axis]) = (at, at);
+        boxes.extend([[l, below], [above, h]]);
+    }
+    let most = 0.1 * (high - low).min_element();
+    let mut grow = || DVec3::from_array([0; 3].map(|_| if rng.random() { rng.random_range(0.0..most) } else { 0.0 }));
+    boxes.into_iter().map(|[l, h]| cuboid((l - grow()).max(low) * 1e-3, (h + grow()).min(high) * 1e-3)).collect()
+}
+
+fn world(moving: Vec<Polyhedron>, fixed: Vec<Polyhedron>) -> Arc<World> {
+    let piece = |p| FixedPart { polyhedron: Arc::new(p), obstacle: 0 };
+    Arc::new(World {
+        moving: moving.into_iter().map(Arc::new).collect(),
+        fixed: fixed.into_iter().map(piece).collect(),
+    })
+}
+
+/// A part over a floor, with or without a wall: whole and cut.
+fn worlds(rng: &mut Rng, walled: bool) -> [Arc<World>; 2] {
+    let half = DVec3::new(rng.random_range(6.0..15.0), rng.random_range(5.0..12.0), rng.random_range(4.0..10.0));
+    let part = [-half, half];
+    let floor = [DVec3::new(-50.0, -50.0, -20.0), DVec3::new(50.0, 50.0, 0.0)];
+    let wall = [DVec3::new(1e3 * WALL, -50.0, -20.0), DVec3::new(50.0, 50.0, 40.0)];
+    let whole = |[low, high]: [DVec3; 2]| cuboid(low * 1e-3, high * 1e-3);
+    let mut whole_fixed = vec![whole(floor)];
+    let (n_part, n_floor, n_wall) = (rng.random_range(1..4), rng.random_range(2..6), rng.random_range(1..4));
+    let moving = cut(rng, part, n_part, &[0, 1, 2]);
+    let mut fixed = cut(rng, floor, n_floor, &[0, 1]);
+    if walled {
+        whole_fixed.push(whole(wall));
+        fixed.extend(cut(rng, wall, n_wall, &[1, 2]));
+    }
+    [world(vec![whole(part)], whole_fixed), world(moving, fixed)]
+}
+
+/// The hand's poses: lying flat or tumbling, up to 0.8 mm deep in the floor and 0.4 mm in the wall.
+fn motion(rng: &mut Rng, corners: &[DVec3], walled: bool, flat: bool) -> Vec<Pose> {
+    let mut any = || DVec3::from_array([0; 3].map(|_| rng.random_range(-1.0..1.0)));
+    let (mut start, mut turn, sway) = (3.0 * any(), any(), 5.0 * any());
+    if flat {
+        (start, turn) = (DVec3::Z * start.z, DVec3::Z * turn.z);
+    }
+    (0..TICKS)
+        .map(|tick| {
+            let s = f64::from(tick) / f64::from(TICKS);
+            let rotation = DQuat::from_scaled_axis(start + turn * s);
+            let lowest = corners.iter().map(|c| (rotation * *c).z).fold(f64::INFINITY, f64::min);
+            let right = corners.iter().map(|c| (rotation * *c).x).fold(f64::NEG_INFINITY, f64::max);
+            let mut over = 0.03 * DVec2::new((sway.x * s).sin(), (sway.y * s).cos());
+            if walled {
+                over.x = (over.x + 0.01).min(WALL - right + 4e-4);
+            }
+            Pose::new(over.extend(-lowest - 4e-4 * (1.0 + (20.0 * s).sin())), rotation)
+        })
+        .collect()
+}
+
+/// Where a vertex crosses a joint close to one of its own body, the nearest planes of all pairs may be seams at once; where the
+/// part lies flat over a joint, each piece carries a part of the region.
+#[test]
+fn cut_parts_on_cut_floors_and_walls_feel_like_the_whole_ones() {
+    for (walled, flat) in [(false, false), (true, false), (false, true), (true, true)] {
+        for seed in 1..=SEEDS {
+            let mut rng = rng(seed);
+            let [whole, cut] = worlds(&mut rng, walled);
+            let hands = motion(&mut rng, whole.moving[0].vertices(), walled, flat);
+            for law in LAWS {
+                let gains = Gains { law, ..Gains::default() };
+                let (mut a, mut b) = (Renderer::new(whole.clone()), Renderer::new(cut.clone()));
+                for (tick, hand) in hands.iter().enumerate() {
+                    let (e, f) = (a.render(hand, &gains, 1e-3), b.render(hand, &gains, 1e-3));
+                    let at = format!("walled {walled}, flat {flat}, seed {seed}, {law:?}, tick {tick}");
+                    let (found, expected) = (f.wrench, e.wrench);
+                    assert!((found.force - expected.force).length() < 1e-6, "{at}: {found:?}, not {expected:?}");
+                    assert!((f.depth - e.depth).abs() < 1e-9, "{at}: {} deep, not {}", f.depth, e.depth);
+                    // As the paper writes it, the mean over the contacts depends on how many there are; and p* jumps where a
+                    // contact becomes multiple, of which tick the pieces may see the one side or the other.
+                    let jumps = match law {
+                        LawKind::Paper => true,
+                        LawKind::Pstar => e.formation.kind != f.formation.kind,
+                        _ => false,
+                    };
+                    let same = (found.torque - expected.torque).length() < 1e-6;
+                    assert!(same || jumps, "{at}: {found:?}, not {expected:?}");
+                }
+            }
+        }
+    }
+}
