@@ -12,7 +12,7 @@ use support::cuboid;
 use support::random::{Rng, rng};
 
 const LAWS: [LawKind; 4] = [LawKind::Paper, LawKind::Pstar, LawKind::Blended, LawKind::Proxy];
-/// Worlds of each kind, and ticks in each. (The same holds for thousands of worlds.)
+/// Worlds of each kind, and ticks in each.
 const SEEDS: u64 = 60;
 const TICKS: u32 = 300;
 /// Where the wall stands, metres.
