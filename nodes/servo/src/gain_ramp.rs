@@ -6,7 +6,7 @@ const TIME: f64 = 0.05;
 const NEAR: f64 = 1e-6;
 
 /// Lets gains that are changed while it runs come in smoothly. The law and the passivity switch change at once: the
-/// renderer passes from one law to another by itself.
+/// renderer passes from one law to another by itself. Limits come up smoothly and down at once.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GainRamp {
     current: Option<Gains>,
@@ -39,6 +39,8 @@ impl GainRamp {
                 let finite = step.is_finite();
                 *value = if finite && (to - *value).abs() > NEAR * to.abs() { *value + step } else { to };
             }
+            // A limit that is lowered holds at once.
+            (g.max_force, g.max_torque) = (g.max_force.min(t.max_force), g.max_torque.min(t.max_torque));
             (g.law, g.passivity, g.ramp_time) = (t.law, t.passivity, t.ramp_time);
             (g.max_force_rate, g.max_torque_rate) = (t.max_force_rate, t.max_torque_rate);
             self.current = Some(g);
@@ -50,6 +52,18 @@ impl GainRamp {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn limits_come_down_at_once_and_up_smoothly() {
+        let mut ramp = GainRamp::default();
+        let high = Gains { max_force: 10.0, max_torque: 1.0, ..Default::default() };
+        let low = Gains { max_force: 2.0, max_torque: 0.1, ..high };
+        ramp.step(&high, 1e-3);
+        let now = ramp.step(&low, 1e-3);
+        assert_eq!((now.max_force, now.max_torque), (2.0, 0.1));
+        let now = ramp.step(&high, 1e-3);
+        assert!(now.max_force > 2.0 && now.max_force < 2.2, "{}", now.max_force);
+    }
 
     #[test]
     fn gains_arrive_exactly_and_without_a_jump() {
