@@ -13,7 +13,8 @@ use std::sync::Arc;
 /// The output has one row a pose: `t,distance,type,feature_a,feature_b,nx,ny,nz,formation,contacts,reseeded,divergent`.
 /// `distance` is the signed distance of A's origin to Near's plane in C-space, metres: `> 0` free, `<= 0` contact.
 /// Features count from 0: vertices in the order of the OBJ file, faces after coplanar ones were merged (in the order of
-/// their first face in the file), edges in the order in which those faces first run along them.
+/// their first face in the file), edges in the order in which those faces, each from its lowest-numbered vertex on, first
+/// run along them.
 #[derive(clap::Args)]
 pub struct Args {
     /// Mesh of the moving part A (OBJ, convex), in its own frame, metres.

@@ -74,7 +74,7 @@ impl Output {
             ramp: 0.0,
             relief: 1.0,
             share: 0.0,
-            stretching: Stretching::default(),
+            stretching: Stretching::new(config.stability.angular_resolution),
             resolution: (config.stability.resolution, config.stability.angular_resolution),
         }
     }
@@ -83,7 +83,7 @@ impl Output {
     pub fn step(&mut self, r: &Rendered<'_>, gains: &Gains, dt: f64, health: &mut Health) -> Wrench {
         if r.restart {
             self.coupling.reset();
-            self.stretching = Stretching::default();
+            self.stretching.reset();
         }
         let damping = self.coupling.damping(r.law, r.hip, r.twist, gains, dt, r.cutoff);
         if !r.remote.is_finite() {

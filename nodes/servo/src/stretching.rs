@@ -4,6 +4,9 @@ use spatial::{DVec3, Pose, Wrench};
 /// Time in which a rotational stiffness that was once seen is forgotten, s.
 const MEMORY: f64 = 0.02;
 
+/// Turns of a hand that does not turn, rad.
+const ROUNDING: f64 = 1e-9;
+
 /// Which way the coupling is being stretched, and how stiffly it resists turning.
 ///
 /// Only that part of the hand's motion is to be damped: sliding along a face, where the proxy goes with the hand, is not
@@ -16,6 +19,8 @@ pub struct Stretching {
     linear: DVec3,
     angular: DVec3,
     rotation_stiffness: f64,
+    /// Turns smaller than this, rad, are none: rounding, which any change of torque would seem stiff against.
+    least_turn: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +32,16 @@ struct Seen {
 }
 
 impl Stretching {
+    /// Of a hand whose rotation is measured in steps of `angular_resolution`, rad.
+    pub fn new(angular_resolution: f64) -> Self {
+        Self { least_turn: (0.5 * angular_resolution).max(ROUNDING), ..Self::default() }
+    }
+
+    /// Forgets what was seen.
+    pub fn reset(&mut self) {
+        *self = Self { least_turn: self.least_turn, ..Self::default() };
+    }
+
     /// Looks at this tick's stretch between the law's proxy and the hand at `hip`, `dt` seconds after the last.
     pub fn step(&mut self, hip: &Pose, law: &LawOutput, kind: LawKind, dt: f64) {
         let now = Seen {
@@ -54,7 +69,7 @@ impl Stretching {
         self.rotation_stiffness *= (1.0 - dt / MEMORY).max(0.0);
         let turned = last.hip.rotation_to(hip);
         let square = turned.length_squared();
-        if square > 0.0 {
+        if square > self.least_turn * self.least_turn {
             self.rotation_stiffness = self.rotation_stiffness.max(-torque.dot(turned) / square);
         }
     }

@@ -4,7 +4,7 @@ use device::Sample;
 use haptics::{Gains, LawKind};
 use scene::Scene;
 use servo::{Config, Health, Tick, TickInput, TickRecord};
-use spatial::{DVec3, Pose, Stamp, Twist, Wrench};
+use spatial::{DQuat, DVec3, Pose, Stamp, Twist, Wrench};
 use std::path::Path;
 
 const DT: f64 = 1e-3;
@@ -257,5 +257,43 @@ fn slow_closed_loops_of_every_law_take_no_energy_from_nowhere() {
         }
         assert!(peak > 0.9, "{law:?}: in contact");
         assert!(given.abs() < 1e-8, "{law:?}: {given} J");
+    }
+}
+
+#[test]
+fn a_hand_that_plunges_deep_and_turns_gets_back_no_more_than_it_put_in() {
+    // Far beyond the greatest force and torque. While the hand only translates, its rotation still jitters in the last bits:
+    // the stiffness in rotation, torque over turn, must not seem huge by that, and with it what a step of the encoders feigns.
+    type Motion = (DVec3, [f64; 2], [f64; 3], [f64; 3]);
+    let motions: [Motion; 3] = [
+        (DVec3::new(-0.8, 0.6, 1.1), [1.2, 0.3], [1.2, 1.6, 5.1], [1.0, 7.0, 1.0]),
+        (DVec3::new(-1.0, -0.3, 0.2), [0.5, 0.4], [3.0, 2.4, 4.5], [7.0, 6.0, 3.0]),
+        (DVec3::new(-1.2, -0.7, -0.9), [1.7, 0.2], [5.9, 3.6, 4.1], [4.0, 1.0, 6.0]),
+    ];
+    for (axis, turn, phase, rate) in motions {
+        for law in LAWS {
+            let config = Config { gains: Gains { law, stiffness: 3000.0, ..Gains::default() }, ..Config::default() };
+            let mut tick = Tick::new(&scene("corner"), &config);
+            let pose = |i: u64| {
+                // From above while the force ramps up, then about in the corner.
+                let (above, s) = (0.1 * 700_u64.saturating_sub(i) as f64 / 700.0, 6e-3 * i.saturating_sub(700) as f64);
+                let jitter = if i.is_multiple_of(2) { 1e-15 } else { 0.0 };
+                let swing = |k: usize| (rate[k] * s + phase[k]).sin();
+                let place = DVec3::new(0.01 * swing(0) - 0.02, 0.01 * swing(1), 0.01 + above + 0.012 * swing(2));
+                Pose::new(place, DQuat::from_axis_angle(axis.normalize(), turn[0] + turn[1] * s.sin() + jitter))
+            };
+            let (mut given, mut most, mut put_in) = (0.0_f64, 0.0_f64, 0.0_f64);
+            let mut shown = Wrench::ZERO;
+            for i in 0..1700 {
+                let (last, now) = (pose(i.max(1) - 1), pose(i));
+                given += shown.force.dot(now.translation - last.translation);
+                given += shown.torque.dot(last.rotation_to(&now));
+                most = most.max(given);
+                put_in = put_in.max(-given);
+                shown = tick.step(&input(i, now, config.gains)).out_wrench;
+            }
+            assert!(put_in > 0.1, "{law:?}, {axis}: {put_in} J");
+            assert!(most <= 1e-6, "{law:?}, {axis}: {most} J of {put_in} J");
+        }
     }
 }
