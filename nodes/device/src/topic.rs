@@ -24,6 +24,10 @@ pub struct TopicDevice {
     arrived_at: Stamp,
 }
 
+/// So many poses in a row that are older than the newest, each later than the one before, are no late arrivals any more: the
+/// sender's clock has started anew or was set back.
+const CLOCK_RESTART: u32 = 20;
+
 /// The middleware's side of a [`TopicDevice`].
 #[derive(Debug)]
 pub struct TopicPort {
@@ -31,6 +35,22 @@ pub struct TopicPort {
     outgoing: Output<Wrench>,
     newest: Message,
     out_of_order: u64,
+    older: Older,
+}
+
+/// The run of poses that came last and are older than the newest, each later than the one before.
+#[derive(Clone, Copy, Debug, Default)]
+struct Older {
+    stamp: Stamp,
+    count: u32,
+}
+
+impl Older {
+    /// The run with a pose of `stamp` after it.
+    fn with(self, stamp: Stamp) -> Self {
+        let goes_on = self.count > 0 && stamp > self.stamp;
+        Self { stamp, count: if goes_on { self.count + 1 } else { 1 } }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -50,16 +70,27 @@ pub fn topic_device(spec: DeviceSpec, config: TopicConfig) -> (TopicDevice, Topi
     let (to_device, incoming) = triple_buffer::triple_buffer(&Message::default());
     let (outgoing, from_device) = triple_buffer::triple_buffer(&Wrench::ZERO);
     let device = TopicDevice { spec, config, incoming, outgoing, arrivals: 0, arrived_at: Stamp(0) };
-    (device, TopicPort { incoming: to_device, outgoing: from_device, newest: Message::default(), out_of_order: 0 })
+    let port = TopicPort {
+        incoming: to_device,
+        outgoing: from_device,
+        newest: Message::default(),
+        out_of_order: 0,
+        older: Older::default(),
+    };
+    (device, port)
 }
 
 impl TopicPort {
     /// A pose came, measured at `stamp` by the sender's clock (`Stamp(0)` if it does not say). One that is not newer than
     /// the last is not taken: the sample repeats, as old as it is, with a sequence number that goes back, so that the tick
-    /// reports it.
+    /// reports it. Twenty such in a row, each later than the one before, tell of a driver that has started anew or of a
+    /// clock that was set back: from then on they are taken.
     pub fn pose(&mut self, pose: Pose, stamp: Stamp) {
         let unstamped = stamp == Stamp(0) || self.newest.stamp == Stamp(0);
-        if unstamped || stamp > self.newest.stamp {
+        let newer = unstamped || stamp > self.newest.stamp;
+        self.older = if newer { Older::default() } else { self.older.with(stamp) };
+        if newer || self.older.count >= CLOCK_RESTART {
+            self.older = Older::default();
             let Message { arrivals, sequence, .. } = self.newest;
             self.newest = Message { arrivals: arrivals + 1, sequence: sequence + 1, stamp, pose, ..self.newest };
             self.incoming.write(self.newest);
@@ -177,6 +208,36 @@ mod tests {
         port.pose(at(3.0), Stamp(30));
         let sample = device.read(Stamp(101));
         assert_eq!((sample.sequence, sample.pose, port.out_of_order()), (3, at(3.0), 2));
+    }
+
+    #[test]
+    fn a_clock_that_starts_anew_is_followed_after_a_while() {
+        let (mut device, mut port) = pair(false);
+        port.pose(at(1.0), Stamp(3_600_000));
+        for late in 1..i64::from(CLOCK_RESTART) {
+            port.pose(at(2.0), Stamp(late));
+            assert_eq!(device.read(Stamp(late)).pose, at(1.0));
+        }
+        port.pose(at(3.0), Stamp(100));
+        let sample = device.read(Stamp(100));
+        assert_eq!((sample.sequence, sample.stamp, sample.pose), (2, Stamp(100), at(3.0)));
+        port.pose(at(4.0), Stamp(101));
+        assert_eq!((device.read(Stamp(101)).pose, port.out_of_order()), (at(4.0), u64::from(CLOCK_RESTART) - 1));
+    }
+
+    #[test]
+    fn a_frozen_driver_and_late_poses_among_others_are_no_new_clock() {
+        let (mut device, mut port) = pair(false);
+        port.pose(at(1.0), Stamp(1000));
+        for _ in 0..2 * CLOCK_RESTART {
+            port.pose(at(9.0), Stamp(1000));
+            port.pose(at(9.0), Stamp(990));
+        }
+        for i in 0..2 * i64::from(CLOCK_RESTART) {
+            port.pose(at(2.0), Stamp(1001 + i));
+            port.pose(at(9.0), Stamp(901 + i));
+        }
+        assert_eq!(device.read(Stamp(5000)).pose, at(2.0));
     }
 
     #[test]
