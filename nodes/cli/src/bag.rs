@@ -22,6 +22,9 @@ enum Command {
     Summary {
         /// The bag's directory.
         dir: PathBuf,
+        /// The topic of the ticks, if the bag holds those of several servos.
+        #[arg(long)]
+        topic: Option<String>,
     },
     /// The sequence of contact formations.
     Segment {
@@ -50,7 +53,7 @@ enum Command {
 pub fn run(args: &Args) -> Result<(), Failure> {
     match &args.command {
         Command::Info { dir } => info(dir),
-        Command::Summary { dir } => crate::bag_summary::run(dir),
+        Command::Summary { dir, topic } => crate::bag_summary::run(dir, topic.as_deref()),
         Command::Segment { dir, out, cut } => bag_segment::segment(dir, out, cut),
         Command::Graph { dirs, out, cut } => bag_segment::graph(dirs, out, cut),
     }

@@ -5,9 +5,9 @@ use bag::{BagReader, RunSummary, Ticks};
 use std::path::Path;
 
 /// `bag summary`: what a recorded run came to.
-pub fn run(dir: &Path) -> Result<(), Failure> {
+pub fn run(dir: &Path, topic: Option<&str>) -> Result<(), Failure> {
     let reader = BagReader::open(dir).map_err(Failure::plain)?;
-    let mut ticks = Ticks::new(&reader, None).map_err(Failure::plain)?;
+    let mut ticks = Ticks::new(&reader, topic).map_err(Failure::plain)?;
     let scene = ticks.find_scene().map(|description| scene_of(dir, &description)).transpose()?;
     let vertices = scene.iter().flat_map(|s| &s.world.moving).flat_map(|part| part.vertices()).copied().collect();
     let mut summary = RunSummary::of_part(vertices);

@@ -1,8 +1,9 @@
+use crate::bag_scene::scene_of;
 use crate::failure::Failure;
 use crate::outputs::spare;
 use ::inspect::{Options, Recorder, Sink, Subject, record_overview};
 use bag::{BagReader, Ticks};
-use scene::{Bundle, Scene};
+use scene::Scene;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -14,6 +15,12 @@ pub struct Args {
     /// The recording to write.
     #[arg(long)]
     rrd: PathBuf,
+    /// The bag's topic of ticks, if it holds those of several servos.
+    #[arg(long)]
+    topic: Option<String>,
+    /// The scene file, if the bag does not carry its scene.
+    #[arg(long)]
+    scene: Option<PathBuf>,
 }
 
 /// A disk may be slow, but not this slow.
@@ -23,34 +30,38 @@ const PATIENCE: Duration = Duration::from_secs(60);
 pub fn run(args: &Args) -> Result<(), Failure> {
     spare(&args.rrd, &[&args.source])?;
     let sink = Sink::File(args.rrd.clone());
-    if args.source.is_dir() { bag(&args.source, &sink) } else { scene(&args.source, &args.rrd, &sink) }
+    if args.source.is_dir() { bag(&args.source, args, &sink) } else { scene(args, &sink) }
 }
 
-fn scene(path: &Path, rrd: &Path, sink: &Sink) -> Result<(), Failure> {
-    let scene = Scene::load(path).map_err(Failure::plain)?;
-    let files = scene.bundle.paths();
-    spare(rrd, &files.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
+fn scene(args: &Args, sink: &Sink) -> Result<(), Failure> {
+    let scene = load(&args.source, &args.rrd)?;
     record_overview(&Subject::of(&scene), sink, PATIENCE).map_err(Failure::plain)
 }
 
-/// The recorder is opened at the first tick: a bag carries its scene before its ticks, and a bag without either leaves
-/// no file behind.
-fn bag(dir: &Path, sink: &Sink) -> Result<(), Failure> {
+/// A scene none of whose files is the one to write.
+fn load(path: &Path, rrd: &Path) -> Result<Scene, Failure> {
+    let scene = Scene::load(path).map_err(Failure::plain)?;
+    let files = scene.bundle.paths();
+    spare(rrd, &files.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
+    Ok(scene)
+}
+
+/// The recorder is opened at the first tick: a bag without scene or ticks leaves no file behind. The scene may stand
+/// anywhere in the bag: a recorder that subscribes to the ticks first gets them first.
+fn bag(dir: &Path, args: &Args, sink: &Sink) -> Result<(), Failure> {
     let reader = BagReader::open(dir).map_err(Failure::plain)?;
-    let mut ticks = Ticks::new(&reader, None).map_err(Failure::plain)?;
+    let ticks = Ticks::new(&reader, args.topic.as_deref()).map_err(Failure::plain)?;
+    let scene = match (&args.scene, ticks.find_scene()) {
+        (Some(path), _) => load(path, &args.rrd)?,
+        (None, Some(description)) => scene_of(dir, &description)?,
+        (None, None) => return Err(Failure::file(dir, "the bag holds no scene: name one with --scene")),
+    };
     let mut recorder = None;
-    while let Some(tick) = ticks.next() {
+    for tick in ticks {
         let tick = tick.map_err(Failure::plain)?;
         let recorder = match &mut recorder {
             Some(recorder) => recorder,
             None => {
-                let description = ticks.scene.as_ref();
-                let description =
-                    description.ok_or_else(|| Failure::file(dir, "the bag holds no scene before its ticks"))?;
-                let files = description.files.iter().map(|f| (f.path.clone(), f.data.clone())).collect();
-                let path = dir.join(format!("{}.yaml", description.name));
-                let scene =
-                    Scene::build(Bundle { path, yaml: description.yaml.clone(), files }).map_err(Failure::plain)?;
                 let gains = &tick.input.gains;
                 let options = Options { full_scale: (gains.max_force, gains.max_torque), ..Options::default() };
                 recorder.insert(Recorder::new(Subject::of(&scene), sink, &options).map_err(Failure::plain)?)

@@ -36,6 +36,18 @@ impl Sink {
         }
     }
 
+    /// Whether it could be opened as it is written, before anything is sent: the address of a viewer has a port. A file is
+    /// tried by opening it.
+    ///
+    /// # Errors
+    /// It is no address.
+    pub fn check(&self) -> Result<(), InspectError> {
+        match self {
+            Self::File(_) => Ok(()),
+            Self::Viewer(address) => proxy_url(address).map(|_| ()),
+        }
+    }
+
     /// Its name in messages.
     pub(crate) fn name(&self) -> String {
         match self {
@@ -89,6 +101,7 @@ mod tests {
         assert_eq!(proxy_url("rerun+http://lab:1/proxy").unwrap(), "rerun+http://lab:1/proxy");
         for bad in ["", "lab", ":9876", "lab:", "lab:0", "lab:99999"] {
             assert!(proxy_url(bad).is_err(), "{bad} was taken");
+            assert!(Sink::Viewer(bad.into()).check().is_err(), "{bad} was taken");
         }
     }
 
