@@ -1,7 +1,7 @@
 use crate::parameters::Declared;
 use crate::{Failure, Outcome};
 use r2r::ParameterValue as V;
-use servo::config::{Config, ParamSpec, Range, Value, schema};
+use servo::config::{Config, ParamSpec, Range, Value, node_switches, schema};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -9,21 +9,7 @@ use std::path::{Path, PathBuf};
 #[must_use]
 pub fn declared() -> Vec<Declared> {
     let mut all: Vec<Declared> = schema().iter().map(from_spec).collect();
-    all.push(Declared::fixed(
-        "enabled",
-        V::Bool(false),
-        "whether force is on from the start, without a call of ~/enable",
-    ));
-    all.push(Declared::fixed(
-        "publish_tf",
-        V::Bool(true),
-        "whether /tf tells child_frame_id (the hand's pose) and child_frame_id_proxy in frame_id, if this ROS has tf2_msgs",
-    ));
-    all.push(Declared::fixed(
-        "device.trust_stamps",
-        V::Bool(true),
-        "driver `topic`: whether the driver's clock is this machine's or synchronised to it, so that a sample is as old as its stamp says",
-    ));
+    all.extend(node_switches().iter().map(|s| Declared::fixed(s.name, V::Bool(s.default), s.meaning)));
     all
 }
 

@@ -1,12 +1,14 @@
 //! Configuration: parameters as a schema in one place, parsed once into checked types.
 
 mod document;
+mod node_switch;
 mod param;
 mod schema;
 mod tree;
 mod values;
 
 pub use document::{markdown_table, parameter_file, yaml_template};
+pub use node_switch::{NodeSwitch, node_switches};
 pub use param::{ParamError, ParamSpec, Range, Value};
 pub use schema::schema;
 use tree::Tree;
@@ -17,7 +19,7 @@ pub use values::{
 
 impl Config {
     /// Reads a ROS 2 parameter file: `NODE: {ros__parameters: {...}}` of any node name, applied in order, or the bare
-    /// tree of parameters. What it does not name keeps its default.
+    /// tree of parameters. What it does not name keeps its default; switches of the node alone are passed over.
     ///
     /// # Errors
     /// The first parameter that is unknown, of the wrong type or out of range, or why the text is no parameter file.
@@ -27,7 +29,9 @@ impl Config {
         let tree: Tree = serde_saphyr::from_str_with_options(yaml, options)
             .map_err(|e| ParamError::Syntax(format!("not a parameter file: {e}")))?;
         let mut config = Self::default();
-        let mut set = |name: &str, value: &Value| config.set(name, value);
+        let mut set = |name: &str, value: &Value| {
+            if node_switch::is_node_switch(name, value)? { Ok(()) } else { config.set(name, value) }
+        };
         let Tree::Node(branches) = &tree else {
             return Err(ParamError::Syntax("not a parameter file: need a map".into()));
         };
@@ -66,7 +70,7 @@ impl Config {
     /// All parameters as a ROS 2 parameter file that reads back to the same configuration: what a bag carries.
     #[must_use]
     pub fn to_yaml(&self) -> String {
-        document::yaml(self, false)
+        document::yaml(self)
     }
 }
 

@@ -82,7 +82,7 @@ static SCHEMA: &[ParamSpec] = &[
         "Hz",
         restart,
         [publish_rate],
-        "Rate of pose, wrench, markers and local C-space; ticks are never thinned out."
+        "Rate of pose, proxy pose and wrench; local C-space comes at 60 Hz, markers at 20 Hz, ticks are never thinned out."
     ),
     param!("scene", Range::Text, "", restart, Text, [scene], "A scene.yaml, or the name of an installed scene."),
     choice!("law", live, [gains.law], ["paper" => LawKind::Paper, "pstar" => LawKind::Pstar, "blended" => LawKind::Blended, "proxy" => LawKind::Proxy],

@@ -84,6 +84,20 @@ fn forbidden_files_are_refused() {
     assert_eq!(Config::from_yaml("law: blended\n").unwrap().gains.law, haptics::LawKind::Blended);
 }
 
+#[test]
+fn a_file_for_the_node_serves_offline_too() {
+    let text = "/**:\n  ros__parameters:\n    enabled: true\n    device: {trust_stamps: false}\n    law: paper\n";
+    assert_eq!(Config::from_yaml(text).unwrap().gains.law, haptics::LawKind::Paper);
+    assert!(Config::from_yaml("enabled: 1\n").unwrap_err().to_string().contains("`enabled`"));
+    assert_eq!(Config::from_yaml(&yaml_template()), Ok(Config::default()));
+    let template = yaml_template();
+    for switch in node_switches() {
+        let leaf = switch.name.rsplit('.').next().unwrap();
+        assert!(template.contains(&format!(" {leaf}: {}\n", switch.default)), "{leaf}");
+        assert!(markdown_table().contains(&format!("`{}`", switch.name)), "{}", switch.name);
+    }
+}
+
 /// Rewrites the files when `UPDATE_GENERATED` is set, otherwise compares.
 #[test]
 fn the_committed_template_and_table_are_fresh() {
