@@ -126,6 +126,10 @@ class ServoNode(unittest.TestCase):
         states = list(self.states)
         indices = [s.index for s in states]
         self.assertEqual(indices, sorted(indices))
+        events = {(s.index, s.event) for s in states}
+        for index in range(indices[0] + 1, indices[-1]):
+            for event in (ContactState.EVENT_BEGIN, ContactState.EVENT_END):
+                self.assertIn((index, event), events, f"state {index}")
         for state in states:
             self.assertLessEqual(seconds(state.begin), seconds(state.header.stamp))
             self.assertGreaterEqual(state.max_force, state.mean_force * (1 - 1e-9))

@@ -56,6 +56,13 @@ impl DeviceSpec {
             damping: 1.0,
         }
     }
+
+    /// What the device can show of a finite wrench: force and torque keep their directions and are shortened to its
+    /// greatest.
+    #[must_use]
+    pub fn shown(&self, wrench: &Wrench) -> Wrench {
+        Wrench::new(wrench.force.clamp_length_max(self.max_force), wrench.torque.clamp_length_max(self.max_torque))
+    }
 }
 
 /// A device as the servo thread sees it. Neither call blocks, allocates or locks: drivers that must, keep a thread of
@@ -67,4 +74,23 @@ pub trait HapticDevice: Send {
     fn read(&mut self, now: Stamp) -> Sample;
     /// Shows a wrench on the hand: axes of the base frame, torque about the handle's origin.
     fn write(&mut self, wrench: &Wrench);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spatial::DVec3;
+
+    #[test]
+    fn a_device_shows_no_more_than_it_can() {
+        let spec = DeviceSpec::force_feedback("arm");
+        let small = Wrench::new(DVec3::new(3.0, -4.0, 0.0), DVec3::X * 0.5);
+        assert_eq!(spec.shown(&small), small);
+        for much in [1e2, 1e6, 1e200] {
+            let shown = spec.shown(&Wrench::new(DVec3::X * -much, DVec3::Y * much));
+            assert_eq!(shown, Wrench::new(DVec3::X * -20.0, DVec3::Y));
+        }
+        let input_only = DeviceSpec { max_force: 0.0, max_torque: 0.0, ..spec };
+        assert_eq!(input_only.shown(&small), Wrench::ZERO);
+    }
 }

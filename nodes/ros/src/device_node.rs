@@ -55,19 +55,20 @@ pub fn declared() -> Vec<Declared> {
 #[derive(Clone, Copy, Debug, Default)]
 struct Commanded {
     wrench: Wrench,
-    since: Option<Stamp>,
+    /// By the monotonic clock: whatever becomes of the wall clock, a command that is not renewed runs out.
+    since: Option<Instant>,
 }
 
 impl Commanded {
-    fn hear(&mut self, wrench: Wrench, now: Stamp) {
+    fn hear(&mut self, wrench: Wrench, now: Instant) {
         // A wrench that is no number is no command: the last good one runs out.
         if wrench.is_finite() {
             *self = Self { wrench, since: Some(now) };
         }
     }
 
-    fn at(&self, now: Stamp, enabled: bool, timeout: f64) -> Wrench {
-        let fresh = self.since.is_some_and(|t| ((now.0 - t.0) as f64 * 1e-9).abs() <= timeout);
+    fn at(&self, now: Instant, enabled: bool, timeout: f64) -> Wrench {
+        let fresh = self.since.is_some_and(|t| (now - t).as_secs_f64() <= timeout);
         if enabled && fresh { self.wrench } else { Wrench::ZERO }
     }
 }
@@ -109,7 +110,7 @@ impl DeviceNode {
         Ok(Self {
             pose: Talker::new(node, "~/pose", qos::sensor())?,
             twist: Talker::new(node, "~/twist", qos::sensor())?,
-            joy: Talker::new(node, "~/joy", qos::sensor())?,
+            joy: Talker::new(node, "~/joy", QosProfile::default())?,
             shown: Talker::new(node, "~/wrench", qos::sensor())?,
             diagnostics: node.create_publisher("/diagnostics", QosProfile::default())?,
             command: Listener::new(node, "~/command/wrench", qos::sensor())?,
@@ -161,7 +162,7 @@ impl DeviceNode {
             next = (next + PERIOD).max(Instant::now());
             let now = self.host.now();
             self.serve(now)?;
-            let wrench = self.commanded.at(now, self.enabled, self.parameters.number("command_timeout"));
+            let wrench = self.commanded.at(Instant::now(), self.enabled, self.parameters.number("command_timeout"));
             self.device.write(&wrench);
             self.tell_shown(&wrench)?;
             let sample = self.device.read(now);
@@ -182,7 +183,10 @@ impl DeviceNode {
 
     fn serve(&mut self, now: Stamp) -> Outcome<()> {
         if let Some(message) = self.command.take_newest() {
-            self.commanded.hear(message.wrench.into(), now);
+            let wrench: Wrench = message.wrench.into();
+            // Not a number stays so, for `hear` to refuse.
+            let shown = if wrench.is_finite() { self.device.spec().shown(&wrench) } else { wrench };
+            self.commanded.hear(shown, Instant::now());
         }
         while let Some(request) = self.enable.take() {
             self.enabled = request.message.data;
@@ -254,16 +258,16 @@ mod tests {
     #[test]
     fn force_needs_a_command_that_is_enabled_and_fresh() {
         let push = Wrench::new(DVec3::X, DVec3::ZERO);
+        let start = Instant::now();
+        let ms = |t: u64| start + Duration::from_millis(t);
         let mut c = Commanded::default();
-        assert_eq!(c.at(Stamp(0), true, 0.02), Wrench::ZERO);
-        c.hear(push, Stamp(1_000_000_000));
-        assert_eq!(c.at(Stamp(1_010_000_000), true, 0.02), push);
-        assert_eq!(c.at(Stamp(1_010_000_000), false, 0.02), Wrench::ZERO);
-        assert_eq!(c.at(Stamp(1_021_000_000), true, 0.02), Wrench::ZERO);
-        // A clock that stepped back does not keep a force alive.
-        assert_eq!(c.at(Stamp(0), true, 0.02), Wrench::ZERO);
-        c.hear(Wrench::new(DVec3::NAN, DVec3::ZERO), Stamp(1_030_000_000));
-        assert_eq!(c.at(Stamp(1_030_000_000), true, 0.02), Wrench::ZERO);
+        assert_eq!(c.at(ms(0), true, 0.02), Wrench::ZERO);
+        c.hear(push, ms(1000));
+        assert_eq!(c.at(ms(1010), true, 0.02), push);
+        assert_eq!(c.at(ms(1010), false, 0.02), Wrench::ZERO);
+        assert_eq!(c.at(ms(1021), true, 0.02), Wrench::ZERO);
+        c.hear(Wrench::new(DVec3::NAN, DVec3::ZERO), ms(1030));
+        assert_eq!(c.at(ms(1030), true, 0.02), Wrench::ZERO);
     }
 
     #[test]

@@ -26,6 +26,28 @@ impl Host {
     /// # Errors
     /// Usage, malformed `--ros-args`, an unreadable parameter file, an impossible name or domain.
     pub fn start(name: &str, usage: &str) -> Outcome<Self> {
+        let mut host = Self::open(name, usage)?;
+        if host.wants_sim_time() {
+            let source = host.node.get_time_source();
+            source.enable_sim_time(&mut host.node)?;
+        }
+        Ok(host)
+    }
+
+    /// The same for a node with a hand at it. A hand lives in real time: `/clock` is not followed, lest stamps mix or a
+    /// paused simulation hold a force; `use_sim_time` gives a warning.
+    ///
+    /// # Errors
+    /// As [`Host::start`].
+    pub fn start_in_real_time(name: &str, usage: &str) -> Outcome<Self> {
+        let host = Self::open(name, usage)?;
+        if host.wants_sim_time() {
+            host.warn("use_sim_time is not followed: a hand lives in real time, all stamps are of the system's clock");
+        }
+        Ok(host)
+    }
+
+    fn open(name: &str, usage: &str) -> Outcome<Self> {
         check_arguments(name, usage, std::env::args().skip(1))?;
         let stop = Arc::new(AtomicBool::new(false));
         for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM, signal_hook::consts::SIGHUP] {
@@ -39,18 +61,18 @@ impl Host {
                 Failure::usage(format!("ROS: {}; see the README for examples", without_origin(&panic_text(p.as_ref()))))
             })?
             .map_err(|e| Failure::new(format!("ROS does not start: {e}; is the environment sourced and HOME set?")))?;
-        let mut node = Node::create(context, name, "").map_err(|e| {
+        let node = Node::create(context, name, "").map_err(|e| {
             Failure::new(format!(
                 "node `{name}` cannot be made: {e}; check its name and namespace, ROS_DOMAIN_ID and RMW_IMPLEMENTATION"
             ))
         })?;
-        if matches!(node.get_parameter::<bool>("use_sim_time"), Ok(true)) {
-            let source = node.get_time_source();
-            source.enable_sim_time(&mut node)?;
-        }
         let name = node.fully_qualified_name()?;
         let clock = node.get_ros_clock();
         Ok(Self { node, name, clock, stop })
+    }
+
+    fn wants_sim_time(&self) -> bool {
+        matches!(self.node.get_parameter::<bool>("use_sim_time"), Ok(true))
     }
 
     /// The node's name with its namespace, after remapping.
@@ -59,7 +81,7 @@ impl Host {
         &self.name
     }
 
-    /// Robot time: the system's clock, or `/clock` if `use_sim_time` is set.
+    /// Robot time: the system's clock, or `/clock` if `use_sim_time` is set and followed.
     #[must_use]
     pub fn now(&self) -> Stamp {
         let now = self.clock.lock().ok().and_then(|mut c| c.get_now().ok()).unwrap_or_default();

@@ -16,10 +16,11 @@ pub fn every_tick() -> QosProfile {
     latched(1000)
 }
 
-/// Contact states and C-space pictures: reliable; a late joiner gets the last one at once if `latched`.
+/// Events of contact: reliable, a late joiner gets the last ones at once. An end and a begin come in one breath: of a
+/// single one kept, what the network loses could not be sent again.
 #[must_use]
-pub fn state(latched: bool) -> QosProfile {
-    if latched { self::latched(1) } else { QosProfile::default() }
+pub fn events() -> QosProfile {
+    latched(10)
 }
 
 /// What a late joiner must have: the last `depth` messages are kept for it.

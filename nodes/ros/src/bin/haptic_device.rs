@@ -8,5 +8,5 @@ const USAGE: &str = "haptic_device: publishes a haptic device's pose, twist and 
     Parameters: device.driver (simulated, replay, spacemouse), device.*, frame_id, publish_rate, command_timeout, enabled.";
 
 fn main() -> ExitCode {
-    failure::run(|| DeviceNode::start(Host::start("haptic_device", USAGE)?)?.run())
+    failure::run(|| DeviceNode::start(Host::start_in_real_time("haptic_device", USAGE)?)?.run())
 }

@@ -8,5 +8,5 @@ const USAGE: &str = "haptic_servo: tracks contacts in C-space and renders the fo
     Parameters: scene, device.driver, law, gains, limits, ...: see config/haptic_servo.param.yaml.";
 
 fn main() -> ExitCode {
-    failure::run(|| ServoNode::start(Host::start("haptic_servo", USAGE)?)?.run())
+    failure::run(|| ServoNode::start(Host::start_in_real_time("haptic_servo", USAGE)?)?.run())
 }

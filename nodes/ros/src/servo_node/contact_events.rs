@@ -27,11 +27,16 @@ impl ContactEvents {
     }
 
     /// Takes a tick in; gives the end of the old state and the begin of the new one when a new one is confirmed. The
-    /// begin comes last: it is what a late joiner is given.
+    /// begin comes last: it is the newest that a late joiner is given.
     pub fn add(&mut self, tick: &TickRecord) -> Vec<ContactState> {
         let Some(change) = self.segmenter.push(tick) else { return Vec::new() };
         let ended = change.ended.as_ref().map(|s| self.message(END, s, s.end, tick));
         ended.into_iter().chain([self.message(BEGIN, &change.began, tick.input.stamp, tick)]).collect()
+    }
+
+    /// The end of the present state, because the servo ends with tick `last`.
+    pub fn finish(&mut self, last: &TickRecord) -> Option<ContactState> {
+        self.segmenter.finish().map(|s| self.message(END, &s, s.end, last))
     }
 
     /// The present state.

@@ -15,10 +15,10 @@ use scene::Scene;
 use servo::config::Config;
 use servo::{AlignedDevice, Commands, Health, LoopConfig, Servo, Tick, TickRecord};
 use spatial::{Stamp, Wrench};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-/// A wrench from the robot older than this is let go, s.
-const REMOTE_TIMEOUT: f64 = 0.1;
+/// A wrench from the robot older than this is let go.
+const REMOTE_TIMEOUT: Duration = Duration::from_millis(100);
 /// How often C-space is told to those who listen, s.
 const CSPACE_PERIOD: f64 = 1.0 / 60.0;
 /// How long a turn waits for requests: well below a batch of ticks.
@@ -47,7 +47,7 @@ pub struct ServoNode {
     enable: Inbox<ServiceRequest<SetBool::Service>>,
     reset: Inbox<ServiceRequest<Trigger::Service>>,
     remote: Listener<WrenchStamped>,
-    remote_since: Option<Stamp>,
+    remote_since: Option<Instant>,
     last: TickRecord,
     since: Health,
     report_due: Due,
@@ -69,7 +69,7 @@ impl ServoNode {
         let node = &mut host.node;
         let (rate, tick_rate) = (config.publish_rate, config.realtime.rate);
         let topics = ServoTopics::new(node, frames, &scene.world, rate, tick_rate, parameters.switch("publish_tf"))?;
-        let contacts = Talker::new(node, "~/contacts", qos::latched(1))?;
+        let contacts = Talker::new(node, "~/contacts", qos::events())?;
         let cspace = Talker::new(node, "~/cspace", QosProfile::default())?;
         let scene_talker = Talker::new(node, "~/scene", qos::latched(1))?;
         let configuration = Talker::new(node, "~/configuration", qos::latched(1))?;
@@ -175,23 +175,23 @@ impl ServoNode {
             self.commands.gains = self.config.gains;
             self.say_configuration()?;
         }
-        self.hear_robot(now);
+        self.hear_robot();
         if self.commands != before {
             self.servo.commands.write(self.commands);
         }
         Ok(())
     }
 
-    /// The wrench measured at a robot that follows; silence is no force.
-    fn hear_robot(&mut self, now: Stamp) {
+    /// The wrench measured at a robot that follows; silence is no force, by the monotonic clock.
+    fn hear_robot(&mut self) {
         if let Some(message) = self.remote.take_newest() {
             let wrench: Wrench = message.wrench.into();
             if wrench.is_finite() {
                 self.commands.remote = wrench;
-                self.remote_since = Some(now);
+                self.remote_since = Some(Instant::now());
             }
         }
-        if self.remote_since.is_some_and(|t| (now.0 - t.0) as f64 * 1e-9 > REMOTE_TIMEOUT) {
+        if self.remote_since.is_some_and(|t| t.elapsed() > REMOTE_TIMEOUT) {
             self.commands.remote = Wrench::ZERO;
             self.remote_since = None;
         }
@@ -257,8 +257,15 @@ impl ServoNode {
         let joined = handle.join();
         while let Some(tick) = records.pop() {
             self.topics.tick(&tick, records.dropped())?;
+            for event in self.events.add(&tick) {
+                self.contacts.say(&event)?;
+            }
+            self.last = tick;
         }
         self.topics.flush()?;
+        if let Some(end) = self.events.finish(&self.last) {
+            self.contacts.say(&end)?;
+        }
         let now = self.host.now();
         self.topics.say_no_force(now)?;
         if let Some(mut link) = link {
