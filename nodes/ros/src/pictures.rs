@@ -13,6 +13,11 @@ use servo::TickRecord;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+/// What a file may take to swallow the rest.
+const FILE_FLUSH: Duration = Duration::from_secs(10);
+/// And a viewer, which may not be there at all: launchers kill what has not ended five seconds after their signal.
+const VIEWER_FLUSH: Duration = Duration::from_secs(2);
+
 /// Where the pictures come from and go to.
 #[derive(Clone, Debug)]
 pub struct PictureOptions {
@@ -51,6 +56,7 @@ impl PictureOptions {
         if sinks.is_empty() {
             return Err(Failure::new("nowhere to draw: set -p output:=FILE.rrd or -p viewer:=true"));
         }
+        sinks.iter().try_for_each(Sink::check).map_err(|e| Failure::new(e.to_string()))?;
         Ok(Self {
             sinks,
             servo: absolute_name(namespace, &parameters.text("servo")),
@@ -130,11 +136,11 @@ impl Pictures {
         Ok(came)
     }
 
-    /// Ends the pictures; each sink has `timeout` to take what is left. Says what was drawn.
+    /// Ends the pictures; each sink has its time to take what is left. Says what was drawn.
     ///
     /// # Errors
     /// If no scene ever came, or a sink did not take everything.
-    pub fn finish(self, timeout: Duration) -> Outcome<String> {
+    pub fn finish(self) -> Outcome<String> {
         if self.feeds.is_empty() {
             return Err(Failure::new(format!(
                 "nothing was drawn: no scene came from {}; is it running, and on this ROS domain?",
@@ -142,7 +148,8 @@ impl Pictures {
             )));
         }
         let dropped: u64 = self.feeds.iter().map(Feed::dropped).sum();
-        for feed in self.feeds {
+        for (feed, sink) in self.feeds.into_iter().zip(&self.options.sinks) {
+            let timeout = if matches!(sink, Sink::File(_)) { FILE_FLUSH } else { VIEWER_FLUSH };
             feed.finish(timeout).map_err(|e| Failure::new(e.to_string()))?;
         }
         Ok(format!("drawn: ticks={} dropped={dropped}", self.drawn))

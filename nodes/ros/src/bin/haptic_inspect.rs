@@ -11,8 +11,6 @@ const USAGE: &str = "haptic_inspect: draws a haptic servo's physical space and C
 /// After the signal: ticks on their way are waited for, as long as they come, at most this long.
 const LAST_WAIT: Duration = Duration::from_secs(2);
 const QUIET: Duration = Duration::from_millis(150);
-/// What a sink may take to swallow the rest.
-const FLUSH: Duration = Duration::from_secs(10);
 
 fn main() -> ExitCode {
     failure::run(body)
@@ -36,7 +34,7 @@ fn body() -> Outcome<()> {
             last = Instant::now();
         }
     }
-    let said = pictures.finish(FLUSH)?;
+    let said = pictures.finish()?;
     host.say(&said);
     Ok(())
 }

@@ -4,6 +4,7 @@
 //! forgets changes when more than ten come at once; so the services are served here.
 
 mod declared;
+mod patterns;
 mod server;
 mod template;
 

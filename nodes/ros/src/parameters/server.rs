@@ -1,4 +1,5 @@
 use super::Declared;
+use super::patterns::unheard_pattern;
 use crate::{Failure, Inbox, Outcome};
 use r2r::rcl_interfaces::msg::{
     FloatingPointRange, IntegerRange, ListParametersResult, Parameter as ParameterMsg, ParameterDescriptor,
@@ -37,9 +38,14 @@ impl ParameterServer {
     pub fn new(node: &mut Node, declared: Vec<Declared>) -> Outcome<Self> {
         let mut declared: BTreeMap<String, Declared> = declared.into_iter().map(|d| (d.name.clone(), d)).collect();
         declared.entry("use_sim_time".into()).or_insert_with(|| {
-            Declared::fixed("use_sim_time", ParameterValue::Bool(false), "whether time comes from /clock")
+            Declared::fixed(
+                "use_sim_time",
+                ParameterValue::Bool(false),
+                "whether time comes from /clock; not followed where a hand is at the node",
+            )
         });
         let name = node.fully_qualified_name()?;
+        refuse_unheard(std::env::args(), &name)?;
         let values = starting_values(&declared, &overrides(node)).map_err(|e| Failure::new(format!("{name}: {e}")))?;
         let qos = QosProfile::parameters;
         Ok(Self {
@@ -160,6 +166,22 @@ impl ParameterServer {
     }
 }
 
+/// Refuses parameter files that mean this node by a pattern which the binding passes over.
+fn refuse_unheard(arguments: impl Iterator<Item = String>, node: &str) -> Outcome<()> {
+    let arguments: Vec<String> = arguments.collect();
+    for pair in arguments.windows(2).filter(|pair| pair[0] == "--params-file") {
+        // A file that cannot be read was refused before.
+        let text = std::fs::read_to_string(&pair[1]).unwrap_or_default();
+        if let Some(pattern) = unheard_pattern(&text, node) {
+            return Err(Failure::new(format!(
+                "{}: parameters of `{pattern}` would not be heard; write `/**` or `{node}` instead",
+                pair[1]
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// What the command line and the parameter files set for this node.
 fn overrides(node: &Node) -> BTreeMap<String, ParameterValue> {
     node.params.lock().map(|p| p.iter().map(|(k, v)| (k.clone(), v.value.clone())).collect()).unwrap_or_default()
@@ -185,7 +207,7 @@ fn unknown(declared: &BTreeMap<String, Declared>, name: &str) -> String {
     let last = name.rsplit('.').next().unwrap_or(name);
     match declared.keys().find(|k| k.rsplit('.').next() == Some(last) || k.starts_with(name)) {
         Some(near) => format!("there is no parameter `{name}`; did you mean `{near}`?"),
-        None => format!("there is no parameter `{name}`; see the README's table of parameters"),
+        None => format!("there is no parameter `{name}`; `ros2 param list` and the files in config/ name them all"),
     }
 }
 
@@ -344,6 +366,19 @@ mod tests {
         let present = starting_values(&tree(), &BTreeMap::new()).unwrap();
         let both = [wanted("gains.damping", V::Double(2.0)), wanted("gains.stiffness", V::Double(f64::NAN))];
         assert!(check(&tree(), &present, &both).unwrap_err().contains("gains.stiffness"));
+    }
+
+    #[test]
+    fn a_pattern_that_would_not_be_heard_is_refused_with_its_file() {
+        let file = std::env::temp_dir().join(format!("unheard_pattern_{}.yaml", std::process::id()));
+        std::fs::write(&file, "/**/haptic_servo:\n  ros__parameters:\n    law: paper\n").unwrap();
+        let name = file.display().to_string();
+        let arguments = |n: &str| ["x", "--ros-args", "--params-file", n].map(str::to_owned).into_iter();
+        let refused = refuse_unheard(arguments(&name), "/left/haptic_servo").unwrap_err().to_string();
+        assert!(refused.contains(&name) && refused.contains("`/left/haptic_servo`"), "{refused}");
+        assert!(refuse_unheard(arguments(&name), "/haptic_device").is_ok());
+        std::fs::remove_file(&file).unwrap();
+        assert!(refuse_unheard(arguments(&name), "/left/haptic_servo").is_ok());
     }
 
     #[test]
