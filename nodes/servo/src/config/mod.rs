@@ -18,8 +18,8 @@ pub use values::{
 };
 
 impl Config {
-    /// Reads a ROS 2 parameter file: `NODE: {ros__parameters: {...}}` of any node name, applied in order, or the bare
-    /// tree of parameters. What it does not name keeps its default; switches of the node alone are passed over.
+    /// Reads a ROS 2 parameter file: `NODE: {ros__parameters: {...}}`, applied in order, or the bare tree of parameters.
+    /// Where a section is of `haptic_servo`, those of other nodes are passed over; else every node name will do. What it does not name keeps its default; switches of the node alone are passed over.
     ///
     /// # Errors
     /// The first parameter that is unknown, of the wrong type or out of range, or why the text is no parameter file.
@@ -35,16 +35,20 @@ impl Config {
         let Tree::Node(branches) = &tree else {
             return Err(ParamError::Syntax("not a parameter file: need a map".into()));
         };
-        let mut parameters = Vec::new();
-        for (_, branch) in branches {
+        let mut sections: Vec<(&str, &Tree)> = Vec::new();
+        for (node, branch) in branches {
             if let Tree::Node(inner) = branch {
-                parameters.extend(inner.iter().filter(|(key, _)| key == "ros__parameters").map(|(_, tree)| tree));
+                let parameters = inner.iter().filter(|(key, _)| key == "ros__parameters");
+                sections.extend(parameters.map(|(_, tree)| (node.rsplit('/').next().unwrap_or_default(), tree)));
             }
         }
-        if parameters.is_empty() {
+        if sections.is_empty() {
             tree.walk("", &mut set)?;
         }
-        parameters.into_iter().try_for_each(|p| p.walk("", &mut set))?;
+        if sections.iter().any(|(node, _)| *node == "haptic_servo") {
+            sections.retain(|(node, _)| ["haptic_servo", "*", "**"].contains(node));
+        }
+        sections.into_iter().try_for_each(|(_, parameters)| parameters.walk("", &mut set))?;
         Ok(config)
     }
 

@@ -98,6 +98,16 @@ fn a_file_for_the_node_serves_offline_too() {
     }
 }
 
+#[test]
+fn of_a_file_for_several_nodes_the_servo_takes_its_own() {
+    let text = "/**:\n  ros__parameters: {frame_id: base}\n/left/haptic_servo:\n  ros__parameters: {law: paper}\n\
+        haptic_recorder:\n  ros__parameters: {topics: [/a, /b], law: 3}\n";
+    let config = Config::from_yaml(text).unwrap();
+    assert_eq!((config.gains.law, config.frame_id.as_str()), (haptics::LawKind::Paper, "base"));
+    let list = Config::from_yaml("gains:\n  stiffness: [1, 2]\n").unwrap_err().to_string();
+    assert!(list.contains("`gains.stiffness` is a list"), "{list}");
+}
+
 /// Rewrites the files when `UPDATE_GENERATED` is set, otherwise compares.
 #[test]
 fn the_committed_template_and_table_are_fresh() {

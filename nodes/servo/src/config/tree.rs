@@ -1,11 +1,13 @@
-use super::Value;
-use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
+use super::{ParamError, Value};
+use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
 /// A YAML tree of parameters, order kept.
 pub enum Tree {
     /// A value.
     Leaf(Value),
+    /// A list, whatever it holds: other nodes have such parameters, the servo has none.
+    List,
     /// Named branches.
     Node(Vec<(String, Tree)>),
 }
@@ -49,6 +51,11 @@ impl<'de> Visitor<'de> for TreeVisitor {
         Ok(Tree::Node(Vec::new()))
     }
 
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Tree, A::Error> {
+        while list.next_element::<IgnoredAny>()?.is_some() {}
+        Ok(Tree::List)
+    }
+
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Tree, A::Error> {
         let mut branches = Vec::new();
         while let Some(branch) = map.next_entry()? {
@@ -60,8 +67,16 @@ impl<'de> Visitor<'de> for TreeVisitor {
 
 impl Tree {
     /// Calls `leaf` with the dotted name and value of every leaf.
-    pub fn walk<E>(&self, name: &str, leaf: &mut impl FnMut(&str, &Value) -> Result<(), E>) -> Result<(), E> {
+    ///
+    /// # Errors
+    /// The first that `leaf` gives, or a list.
+    pub fn walk(
+        &self,
+        name: &str,
+        leaf: &mut impl FnMut(&str, &Value) -> Result<(), ParamError>,
+    ) -> Result<(), ParamError> {
         match self {
+            Self::List => Err(ParamError::Syntax(format!("parameter `{name}` is a list: the servo has no such"))),
             Self::Leaf(value) => leaf(name, value),
             Self::Node(branches) => branches.iter().try_for_each(|(key, branch)| {
                 let name = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
