@@ -112,17 +112,17 @@ impl DepthLaw {
             if t.plane.distance >= 0.0 {
                 continue;
             }
-            let (part, piece) = (t.part as usize, t.piece as usize);
+            let pair = solids.pair(t.part, t.piece, placed);
             t.tie *= if was_multiple { 1.5 } else { 1.0 };
             let within = if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
             let limit = t.plane.distance + within;
             t.first = self.points.len();
-            if let Some(lone) = lone_contact(solids.part(part), solids.piece(piece), placed, &t.plane, within) {
+            if let Some(lone) = lone_contact(&pair, &t.plane, within) {
                 self.points.push(lone);
             } else {
                 // Along Near's normal no contact can be deeper than Near.
                 let scope = Scope { reach: limit, near_felt: true, wide: law == LawKind::Blended, along_near: true };
-                self.clipper.region(solids, part, piece, placed, &t.plane, &scope, &mut self.points);
+                self.clipper.region(&pair, &t.plane, &scope, &mut self.points);
             }
             t.end = self.points.len();
         }
@@ -181,8 +181,7 @@ impl DepthLaw {
         }
         let reach = t.plane.distance + gains.blend_depth.max(t.tie);
         let scope = Scope { reach, near_felt: false, wide: true, along_near: true };
-        let of_pair = (t.part as usize, t.piece as usize);
-        self.clipper.beside(solids, pairs, of_pair, placed, &t.plane, &scope, 0, &mut self.beside);
+        self.clipper.beside(&solids.pair(t.part, t.piece, placed), pairs, &t.plane, &scope, &mut self.beside);
     }
 
     /// The torque of the force share that plane `i` carries, over the contacts of all pairs with an equal plane.

@@ -1,10 +1,9 @@
 //! A face of A laid on a face of B: where they lie over each other, and what takes place there.
 
-use crate::placed::Placed;
+use crate::pair::Pair;
 use crate::region::{RegionPoint, Scope};
-use crate::solid::Solids;
-use cspace::{BasicContact, EdgeId, FaceId, Plane, Polyhedron, VertexId};
-use spatial::{DMat3, DVec3};
+use cspace::{BasicContact, EdgeId, FaceId, Plane, VertexId};
+use spatial::DVec3;
 
 /// Where a corner of the region comes from: positions in the rings of A's and of B's face.
 #[derive(Clone, Copy, Debug)]
@@ -25,15 +24,10 @@ const STEEP: f64 = 0.1;
 /// Two faces and the direction in which they are laid on each other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FacePair<'a> {
-    pub a: &'a Polyhedron,
-    pub b: &'a Polyhedron,
-    /// Indices of the bodies in their assemblies.
-    part: usize,
-    piece: usize,
+    pub pair: Pair<'a>,
     face_a: FaceId,
     face_b: FaceId,
-    placed: &'a Placed,
-    scope: &'a Scope,
+    scope: Scope,
     /// Unit, axes of W.
     sight: DVec3,
     /// Of A's face, inward.
@@ -48,29 +42,21 @@ pub(crate) struct FacePair<'a> {
 
 impl<'a> FacePair<'a> {
     /// None if the faces do not lie over each other. `near_w` is Near's normal.
-    pub fn new(
-        solids: &'a Solids,
-        (part, piece): (usize, usize),
-        (face_a, face_b): (FaceId, FaceId),
-        placed: &'a Placed,
-        near_w: DVec3,
-        scope: &'a Scope,
-    ) -> Option<Self> {
-        let (a, b) = (solids.part(part), solids.piece(piece));
-        let plane_b = b.face_plane(face_b);
-        let normal_a = -(placed.r * a.face_plane(face_a).normal);
+    pub fn new(pair: &Pair<'a>, (face_a, face_b): (FaceId, FaceId), near_w: DVec3, scope: &Scope) -> Option<Self> {
+        let plane_b = pair.b.face_plane(face_b);
+        let normal_a = -(pair.placed.r * pair.a.face_plane(face_a).normal);
         let sight = if scope.along_near { near_w } else { plane_b.normal };
         let (lean, slope) = (normal_a.dot(plane_b.normal), sight.dot(plane_b.normal));
         if lean <= STEEP || slope <= STEEP || sight.dot(normal_a) <= STEEP {
             return None;
         }
         let highest = if scope.along_near { scope.reach * slope } else { scope.reach / lean };
-        Some(Self { a, b, part, piece, face_a, face_b, placed, scope, sight, normal_a, plane_b, lean, slope, highest })
+        Some(Self { pair: *pair, face_a, face_b, scope: *scope, sight, normal_a, plane_b, lean, slope, highest })
     }
 
     /// The vertices of A's face.
     pub fn ring_a(&self) -> &'a [VertexId] {
-        self.a.face_vertices(self.face_a)
+        self.pair.a.face_vertices(self.face_a)
     }
 
     /// How high a point lies above B's plane, metres.
@@ -81,7 +67,7 @@ impl<'a> FacePair<'a> {
     /// The sides of B's face as planes along the sight: outward normals, not of unit length, and offsets.
     pub fn sides_of_b(&self) -> impl Iterator<Item = (DVec3, f64)> + Clone + use<'a> {
         let Self { plane_b, sight, slope, .. } = *self;
-        self.b.face_sides(self.face_b).iter().map(move |side| {
+        self.pair.b.face_sides(self.face_b).iter().map(move |side| {
             let lean = side.normal.dot(sight);
             (side.normal * slope - plane_b.normal * lean, side.distance * slope - plane_b.distance * lean)
         })
@@ -90,26 +76,26 @@ impl<'a> FacePair<'a> {
     /// The point of A's face over the `j`-th vertex of B's face, if that lies under A's face and not within `same` metres of its
     /// border.
     pub fn over_vertex_of_b(&self, j: usize, same: f64) -> Option<DVec3> {
-        let at = self.b.vertex(self.b.face_vertices(self.face_b)[j]);
-        let on_a = self.placed.point(self.a.vertex(self.ring_a()[0]));
+        let at = self.pair.b.vertex(self.pair.b.face_vertices(self.face_b)[j]);
+        let on_a = self.pair.placed.point(self.pair.a.vertex(self.ring_a()[0]));
         let span = self.normal_a.dot(on_a - at) / self.normal_a.dot(self.sight);
         if span * self.slope > self.highest {
             return None;
         }
         let point = at + self.sight * span;
-        let seen = self.placed.seen_from_a(point);
-        self.a.face_sides(self.face_a).iter().all(|s| s.signed_distance(seen) < -same).then_some(point)
+        let seen = self.pair.placed.seen_from_a(point);
+        self.pair.a.face_sides(self.face_a).iter().all(|s| s.signed_distance(seen) < -same).then_some(point)
     }
 
     /// The basic contact at a corner of the region, from the point of A's face there. None where there is no border to touch,
     /// since a face goes on in another piece of its body, and beyond the reach.
-    pub fn contact(&self, solids: &Solids, corner: Corner, point: DVec3) -> Option<RegionPoint> {
+    pub fn contact(&self, corner: Corner, point: DVec3) -> Option<RegionPoint> {
         let height = self.height(point);
         if height > self.highest {
             return None;
         }
         let foot = point - self.sight * (height / self.slope);
-        if self.scope.wide && self.is_cut_in_a(solids, corner, point) {
+        if self.scope.wide && self.is_cut_in_a(corner, point) {
             // Weighted by their depths, the ends of a cut in A's face would count as contacts.
             return None;
         }
@@ -119,21 +105,20 @@ impl<'a> FacePair<'a> {
                 (BasicContact::TypeB { vertex_a, face_b: self.face_b }, foot, self.plane_b.normal, height)
             }
             Corner::OfB(j) => {
-                let vertex_b = self.b.face_vertices(self.face_b)[j];
-                let at = self.b.vertex(vertex_b);
-                let last = if j == 0 { self.b.face_vertices(self.face_b).len() - 1 } else { j - 1 };
-                if [last, j].iter().any(|s| solids.goes_on_b(self.piece, self.face_b, *s, at)) {
+                let vertex_b = self.pair.b.face_vertices(self.face_b)[j];
+                let at = self.pair.b.vertex(vertex_b);
+                let last = if j == 0 { self.pair.b.face_vertices(self.face_b).len() - 1 } else { j - 1 };
+                if [last, j].iter().any(|s| self.pair.solids.goes_on_b(self.pair.piece, self.face_b, *s, at)) {
                     return None;
                 }
                 (BasicContact::TypeA { face_a: self.face_a, vertex_b }, at, self.normal_a, height * self.lean)
             }
             Corner::Crossing(i, j) => {
-                if solids.goes_on_b(self.piece, self.face_b, j, foot) {
+                if self.pair.solids.goes_on_b(self.pair.piece, self.face_b, j, foot) {
                     return None;
                 }
-                let (edge_a, edge_b) = (self.a.face_edges(self.face_a)[i], self.b.face_edges(self.face_b)[j]);
-                let (normal_w, gap) =
-                    crossing(self.a, edge_a, self.b, edge_b, &self.placed.r, self.plane_b.normal, height);
+                let (edge_a, edge_b) = (self.pair.a.face_edges(self.face_a)[i], self.pair.b.face_edges(self.face_b)[j]);
+                let (normal_w, gap) = crossing(&self.pair, edge_a, edge_b, self.plane_b.normal, height);
                 (BasicContact::TypeC { edge_a, edge_b }, foot, normal_w, gap)
             }
         };
@@ -142,8 +127,8 @@ impl<'a> FacePair<'a> {
     }
 
     /// Whether A's face goes on in another part of A beyond a side that the corner lies on.
-    fn is_cut_in_a(&self, solids: &Solids, corner: Corner, point: DVec3) -> bool {
-        let is_cut = |side| solids.goes_on_a(self.part, self.face_a, side, point, self.placed);
+    fn is_cut_in_a(&self, corner: Corner, point: DVec3) -> bool {
+        let is_cut = |side| self.pair.solids.goes_on_a(self.pair.part, self.face_a, side, point, self.pair.placed);
         match corner {
             Corner::OfA(i) => is_cut(i) || is_cut(if i == 0 { self.ring_a().len() - 1 } else { i - 1 }),
             Corner::OfB(_) => false,
@@ -153,16 +138,8 @@ impl<'a> FacePair<'a> {
 }
 
 /// Normal and gap of two crossing edges whose vertical distance above B's face is `height`.
-fn crossing(
-    a: &Polyhedron,
-    edge_a: EdgeId,
-    b: &Polyhedron,
-    edge_b: EdgeId,
-    r: &DMat3,
-    normal_b: DVec3,
-    height: f64,
-) -> (DVec3, f64) {
-    let n = (*r * a.edge_direction(edge_a)).cross(b.edge_direction(edge_b));
+fn crossing(pair: &Pair<'_>, edge_a: EdgeId, edge_b: EdgeId, normal_b: DVec3, height: f64) -> (DVec3, f64) {
+    let n = (pair.placed.r * pair.a.edge_direction(edge_a)).cross(pair.b.edge_direction(edge_b));
     let length = n.length();
     if length <= PARALLEL_EDGES {
         return (normal_b, height);

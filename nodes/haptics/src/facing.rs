@@ -1,19 +1,14 @@
 //! Whether the features of a basic contact face each other, and where.
 
-use crate::placed::Placed;
+use crate::pair::Pair;
 use crate::region::RegionPoint;
 use cspace::{BasicContact, CFace, EdgeId, FaceId, Plane, Polyhedron, VertexId};
 use spatial::DVec3;
 
 /// Near's own contact if every other contact of the region lies more than `within` metres above it along Near's normal: a
 /// vertex that stands steep enough, and far enough inside the face, or two edges that cross steeply far from their ends.
-pub(crate) fn lone_contact(
-    a: &Polyhedron,
-    b: &Polyhedron,
-    placed: &Placed,
-    near: &CFace,
-    within: f64,
-) -> Option<RegionPoint> {
+pub(crate) fn lone_contact(pair: &Pair<'_>, near: &CFace, within: f64) -> Option<RegionPoint> {
+    let Pair { a, b, placed, .. } = *pair;
     let normal_a = placed.r.transpose() * near.normal_w;
     let point_w = match near.contact {
         BasicContact::TypeB { vertex_a, face_b } => {
@@ -27,7 +22,7 @@ pub(crate) fn lone_contact(
             is_inside(a.face_sides(face_a), placed.seen_from_a(at), clear).then_some(at)?
         }
         BasicContact::TypeC { edge_a, edge_b } => {
-            let at = facing_point(a, b, placed, near, 0.0)?;
+            let at = facing_point(pair, near, 0.0)?;
             let (on_a, along_a) = (placed.seen_from_a(at + near.normal_w * near.distance), a.edge_direction(edge_a));
             let cross = (placed.r * along_a).cross(b.edge_direction(edge_b)).length();
             let slope = slope_of_edge(a, edge_a, -normal_a).min(slope_of_edge(b, edge_b, near.normal_w));
@@ -70,13 +65,8 @@ fn is_inside(sides: &[Plane], p: DVec3, clear: f64) -> bool {
 }
 
 /// App of a basic contact on B's side if the two features face each other (within `tolerance` metres), else none.
-pub(crate) fn facing_point(
-    a: &Polyhedron,
-    b: &Polyhedron,
-    placed: &Placed,
-    c: &CFace,
-    tolerance: f64,
-) -> Option<DVec3> {
+pub(crate) fn facing_point(pair: &Pair<'_>, c: &CFace, tolerance: f64) -> Option<DVec3> {
+    let Pair { a, b, placed, .. } = *pair;
     match c.contact {
         BasicContact::TypeB { vertex_a, face_b } => {
             let p = placed.point(a.vertex(vertex_a)) - c.normal_w * c.distance;

@@ -13,6 +13,7 @@ mod friction;
 mod gains;
 mod law;
 mod limiter;
+mod pair;
 mod paper_torque;
 mod passivity;
 mod placed;

@@ -1,11 +1,12 @@
 //! What the proxy sees around it: the contacts of all pairs in reach, and how deep it penetrates.
 
 use crate::formation::{ContactFormation, ContactPoint, FormationKind};
+use crate::pair::Covered;
 use crate::placed::Placed;
 use crate::proxy::Step;
 use crate::region::{Clipper, RegionPoint, Scope, most_parallel};
 use crate::sense::{Sense, Sensed};
-use crate::solid::{Covered, Solids};
+use crate::solid::Solids;
 use cspace::{BasicContact, CFace};
 use spatial::{DVec3, Pose};
 
@@ -120,7 +121,7 @@ impl View {
             if s.near.distance > self.reach {
                 continue;
             }
-            if solids.is_felt(s.part as usize, s.piece as usize, &placed, &s.near, Covered::Unfelt) {
+            if solids.of(&s, &placed).is_felt(&s.near, Covered::Unfelt) {
                 felt_penetration = felt_penetration.max(-s.near.distance);
                 self.list(solids, s.part, s.piece, &s.near, true, &placed);
             } else if s.near.distance > -PENETRATION && self.leans_on_open_face(solids, &s, &placed) {
@@ -136,20 +137,12 @@ impl View {
         }
         for k in 0..self.sense.pairs.len() {
             let s = self.sense.pairs[k];
-            let (part, piece) = (s.part as usize, s.piece as usize);
             if !self.unfelt[k] {
                 continue;
             }
-            let Some(plane) = solids.felt_plane(
-                part,
-                piece,
-                &placed,
-                &s.near,
-                Covered::Unfelt,
-                &mut self.hints[part * self.pieces + piece],
-            ) else {
-                continue;
-            };
+            let pair = solids.of(&s, &placed);
+            let hint = &mut self.hints[pair.part * self.pieces + pair.piece];
+            let Some(plane) = pair.felt_plane(&s.near, Covered::Unfelt, hint) else { continue };
             // A plane far inside belongs to the other side of the solid: the pieces around push out first.
             if plane.distance >= -BESIDE || felt_penetration <= PENETRATION && s.near.distance < -PENETRATION {
                 self.list(solids, s.part, s.piece, &plane, true, &placed);
@@ -159,15 +152,15 @@ impl View {
 
     /// Whether a face of the solid at Near's features stands across Near's normal.
     fn leans_on_open_face(&self, solids: &Solids, s: &Sensed, placed: &Placed) -> bool {
-        let (part, piece) = (s.part as usize, s.piece as usize);
-        most_parallel(solids, part, piece, &placed.r, &s.near)
-            .is_some_and(|(_, face_b)| solids.piece(piece).face_plane(face_b).normal.dot(s.near.normal_w) > 0.9)
+        let pair = solids.of(s, placed);
+        most_parallel(&pair, &s.near)
+            .is_some_and(|(_, face_b)| pair.b.face_plane(face_b).normal.dot(s.near.normal_w) > 0.9)
     }
 
     fn list(&mut self, solids: &Solids, part: u32, piece: u32, plane: &CFace, felt: bool, placed: &Placed) {
         let first = self.points.len();
         let scope = Scope { reach: self.reach, near_felt: felt, wide: false, along_near: false };
-        self.clipper.region(solids, part as usize, piece as usize, placed, plane, &scope, &mut self.points);
+        self.clipper.region(&solids.pair(part, piece, placed), plane, &scope, &mut self.points);
         self.pairs.push(InReach { part, piece, first, end: self.points.len(), plane: *plane, felt });
     }
 
@@ -175,7 +168,7 @@ impl View {
     pub fn tied_plane(&self, solids: &Solids, k: usize, placed: &Placed) -> Option<CFace> {
         let pair = &self.pairs[k];
         let touches = (-PENETRATION..=TIE).contains(&pair.plane.distance);
-        touches.then(|| solids.tied_plane(pair.part as usize, pair.piece as usize, placed, &pair.plane, TIE)).flatten()
+        touches.then(|| solids.pair(pair.part, pair.piece, placed).tied_plane(&pair.plane, TIE)).flatten()
     }
 
     /// Lists the contacts of the `k`-th pair for this plane instead, last of all; returns the pair as it was.

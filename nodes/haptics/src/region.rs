@@ -2,11 +2,10 @@
 
 use crate::face_pair::{Corner, FacePair, PARALLEL_EDGES};
 use crate::facing::facing_point;
-use crate::placed::Placed;
+use crate::pair::Pair;
 use crate::sense::Sensed;
-use crate::solid::Solids;
 use cspace::{BasicContact, CFace, FaceId, Polyhedron, World};
-use spatial::{DMat3, DVec3};
+use spatial::DVec3;
 
 /// A basic contact of the region: one of the paper's K contacts when it takes place, a potential one when it has a gap.
 #[derive(Clone, Copy, Debug)]
@@ -121,98 +120,74 @@ impl Clipper {
     /// Appends to `out` the contacts of the region between the faces at `near` that `scope` asks for, as long as `out` has
     /// room. Faces inside the assembly of their own body are never chosen, and where B's face goes on in another piece
     /// there is no border to touch.
-    #[expect(clippy::too_many_arguments, reason = "one call site each; a struct would only rename them")]
-    pub fn region(
-        &mut self,
-        solids: &Solids,
-        part: usize,
-        piece: usize,
-        placed: &Placed,
-        near: &CFace,
-        scope: &Scope,
-        out: &mut Vec<RegionPoint>,
-    ) {
-        let (a, b) = (solids.part(part), solids.piece(piece));
-        let same = SAME_POINT * (a.size() + b.size());
+    pub fn region(&mut self, pair: &Pair<'_>, near: &CFace, scope: &Scope, out: &mut Vec<RegionPoint>) {
+        let same = same_place(pair);
         let first = out.len();
         // Near's own contact first, at its exact place, when its features face each other.
-        let own = if scope.near_felt { facing_point(a, b, placed, near, 1e3 * same) } else { None };
+        let own = if scope.near_felt { facing_point(pair, near, 1e3 * same) } else { None };
         if let Some(point_w) = own.filter(|_| near.distance <= scope.reach) {
             push(RegionPoint::of(near, point_w), same, [first; 2], out);
         }
         self.pairs.clear();
         if scope.wide {
-            facing_pairs(solids, part, piece, &placed.r, near, &mut self.pairs);
+            facing_pairs(pair, near, &mut self.pairs);
         } else {
-            self.pairs.extend(most_parallel(solids, part, piece, &placed.r, near));
+            self.pairs.extend(most_parallel(pair, near));
         }
+        let known = own.map(|_| near.contact);
         for k in 0..self.pairs.len() {
-            let (face_a, face_b) = self.pairs[k];
-            self.faces(solids, (part, piece), placed, near, own.is_some(), (face_a, face_b), scope, first, out);
+            if let Some(faces) = FacePair::new(pair, self.pairs[k], near.normal_w, scope) {
+                self.faces(&faces, known, first, out);
+            }
         }
     }
 
     /// Appends the contacts of the region of `near` that belong to other pairs: where the faces that [`Clipper::region`] finds (with
     /// a wide scope) go on in other pieces of their bodies, as one plane. Only the pairs in `others` are looked at.
-    #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
     pub fn beside(
         &mut self,
-        solids: &Solids,
+        pair: &Pair<'_>,
         others: &[Sensed],
-        (part, piece): (usize, usize),
-        placed: &Placed,
         near: &CFace,
         scope: &Scope,
-        first: usize,
         out: &mut Vec<RegionPoint>,
     ) {
+        let first = out.len();
         self.pairs.clear();
-        facing_pairs(solids, part, piece, &placed.r, near, &mut self.pairs);
+        facing_pairs(pair, near, &mut self.pairs);
         for s in others {
-            let (other_a, other_b) = (s.part as usize, s.piece as usize);
-            if (other_a, other_b) == (part, piece) {
+            let other = pair.solids.of(s, pair.placed);
+            if (other.part, other.piece) == (pair.part, pair.piece) {
                 continue;
             }
             for k in 0..self.pairs.len() {
                 let (face_a, face_b) = self.pairs[k];
-                let faces = solids.flush_a(part, face_a, other_a).zip(solids.flush_b(piece, face_b, other_b));
-                if let Some(faces) = faces {
-                    self.faces(solids, (other_a, other_b), placed, near, false, faces, scope, first, out);
+                let flush_a = pair.solids.flush_a(pair.part, face_a, other.part);
+                let faces = flush_a.zip(pair.solids.flush_b(pair.piece, face_b, other.piece));
+                if let Some(faces) = faces.and_then(|f| FacePair::new(&other, f, near.normal_w, scope)) {
+                    self.faces(&faces, None, first, out);
                 }
             }
         }
     }
 
-    /// Appends the contacts between one face of each body: the corners of the region in which they lie over each other.
-    #[expect(clippy::too_many_arguments, reason = "two call sites; a struct would only rename them")]
-    fn faces(
-        &mut self,
-        solids: &Solids,
-        of_pair: (usize, usize),
-        placed: &Placed,
-        near: &CFace,
-        own: bool,
-        faces: (FaceId, FaceId),
-        scope: &Scope,
-        first: usize,
-        out: &mut Vec<RegionPoint>,
-    ) {
-        let Some(pair) = FacePair::new(solids, of_pair, faces, placed, near.normal_w, scope) else { return };
-        let same = SAME_POINT * (pair.a.size() + pair.b.size());
+    /// Appends the contacts between one face of each body, but for the one that is known: the corners of the region in which they
+    /// lie over each other.
+    fn faces(&mut self, faces: &FacePair<'_>, known: Option<BasicContact>, first: usize, out: &mut Vec<RegionPoint>) {
+        let same = same_place(&faces.pair);
         let ring = out.len();
         let mut add = |corner: Corner, point: DVec3| {
-            let found = pair.contact(solids, corner, point).filter(|p| !own || p.contact != near.contact);
-            if let Some(found) = found {
+            if let Some(found) = faces.contact(corner, point).filter(|p| known != Some(p.contact)) {
                 push(found, same, [first, ring], out);
             }
         };
-        self.edges_of_a(&pair, placed, same, &mut add);
+        self.edges_of_a(faces, same, &mut add);
         // A vertex of B under A's face has something of A beyond both its sides.
         let mut last = self.cuts.last().copied().unwrap_or(false);
         for (j, cuts) in self.cuts.iter().enumerate() {
             if std::mem::replace(&mut last, *cuts)
                 && *cuts
-                && let Some(point) = pair.over_vertex_of_b(j, same)
+                && let Some(point) = faces.over_vertex_of_b(j, same)
             {
                 add(Corner::OfB(j), point);
             }
@@ -221,16 +196,16 @@ impl Clipper {
 
     /// Gives `add` the vertices of A's face that lie over B's face, and where A's edges cross B's: A's edges are cut by the sides
     /// of B's face (Cyrus and Beck 1978).
-    fn edges_of_a(&mut self, pair: &FacePair<'_>, placed: &Placed, same: f64, add: &mut impl FnMut(Corner, DVec3)) {
+    fn edges_of_a(&mut self, faces: &FacePair<'_>, same: f64, add: &mut impl FnMut(Corner, DVec3)) {
         let Self { ring, beyond, cuts, spans, .. } = self;
         ring.clear();
-        ring.extend(pair.ring_a().iter().map(|v| placed.point(pair.a.vertex(*v))));
+        ring.extend(faces.ring_a().iter().map(|v| faces.pair.placed.point(faces.pair.a.vertex(*v))));
         let n = ring.len();
         let next = |i: usize| if i + 1 < n { i + 1 } else { 0 };
         spans.clear();
         spans.resize(n, Span::WHOLE);
         cuts.clear();
-        let sides = pair.sides_of_b();
+        let sides = faces.sides_of_b();
         for (j, (outward, offset)) in sides.clone().enumerate() {
             // What lies outside by no more than `same` counts as inside.
             beyond.clear();
@@ -252,7 +227,7 @@ impl Clipper {
             Some(p + (q - p) * (p_beyond / (p_beyond - q_beyond)).clamp(0.0, 1.0))
         };
         for (i, span) in spans.iter().enumerate() {
-            if span.enter > span.leave || pair.height(ring[i]).min(pair.height(ring[next(i)])) > pair.highest {
+            if span.enter > span.leave || faces.height(ring[i]).min(faces.height(ring[next(i)])) > faces.highest {
                 continue;
             }
             if span.entered == Span::NONE {
@@ -283,16 +258,15 @@ fn push(p: RegionPoint, same: f64, [first, ring]: [usize; 2], out: &mut Vec<Regi
     }
 }
 
+/// Contacts closer together than this are one, metres.
+fn same_place(pair: &Pair<'_>) -> f64 {
+    SAME_POINT * (pair.a.size() + pair.b.size())
+}
+
 /// The pair of faces, one of each body, at the features of `near` that are most nearly antiparallel.
-pub(crate) fn most_parallel(
-    solids: &Solids,
-    part: usize,
-    piece: usize,
-    r: &DMat3,
-    near: &CFace,
-) -> Option<(FaceId, FaceId)> {
+pub(crate) fn most_parallel(pair: &Pair<'_>, near: &CFace) -> Option<(FaceId, FaceId)> {
     let mut best = (f64::INFINITY, None);
-    for_each_pair(solids, part, piece, r, near, |cosine, faces| {
+    for_each_pair(pair, near, |cosine, faces| {
         if cosine < best.0 {
             best = (cosine, Some(faces));
         }
@@ -302,9 +276,9 @@ pub(crate) fn most_parallel(
 
 /// The pairs of faces at the features of `near` that face each other: the most nearly antiparallel, and as many others as
 /// `out` has room for.
-fn facing_pairs(solids: &Solids, part: usize, piece: usize, r: &DMat3, near: &CFace, out: &mut Vec<(FaceId, FaceId)>) {
-    out.extend(most_parallel(solids, part, piece, r, near));
-    for_each_pair(solids, part, piece, r, near, |cosine, faces| {
+fn facing_pairs(pair: &Pair<'_>, near: &CFace, out: &mut Vec<(FaceId, FaceId)>) {
+    out.extend(most_parallel(pair, near));
+    for_each_pair(pair, near, |cosine, faces| {
         if cosine < FACING && out.len() < out.capacity() && out.first() != Some(&faces) {
             out.push(faces);
         }
@@ -312,15 +286,8 @@ fn facing_pairs(solids: &Solids, part: usize, piece: usize, r: &DMat3, near: &CF
 }
 
 /// Calls `each` with the pairs of surface faces at the features of `near`, and the cosine between their outward normals.
-fn for_each_pair(
-    solids: &Solids,
-    part: usize,
-    piece: usize,
-    r: &DMat3,
-    near: &CFace,
-    mut each: impl FnMut(f64, (FaceId, FaceId)),
-) {
-    let (a, b) = (solids.part(part), solids.piece(piece));
+fn for_each_pair(pair: &Pair<'_>, near: &CFace, mut each: impl FnMut(f64, (FaceId, FaceId))) {
+    let Pair { solids, a, b, part, piece, placed } = *pair;
     let (one_a, one_b);
     let (edge_a_faces, edge_b_faces);
     let (faces_a, faces_b): (&[FaceId], &[FaceId]) = match near.contact {
@@ -338,7 +305,7 @@ fn for_each_pair(
         }
     };
     for i in faces_a.iter().filter(|f| !solids.is_internal_a(part, **f)) {
-        let normal = *r * a.face_plane(*i).normal;
+        let normal = placed.r * a.face_plane(*i).normal;
         for j in faces_b.iter().filter(|f| !solids.is_internal_b(piece, **f)) {
             each(b.face_plane(*j).normal.dot(normal), (*i, *j));
         }

@@ -4,11 +4,12 @@ mod hold;
 mod refine;
 
 use crate::facing::facing_point;
+use crate::pair::Covered;
 use crate::placed::Placed;
 use crate::projection::{Projection, Row};
 use crate::renderer::SCP_MARGIN;
 use crate::sense::{Sense, Sensed};
-use crate::solid::{Covered, Solids};
+use crate::solid::Solids;
 use cspace::{BasicContact, CFace};
 use hold::Held;
 use spatial::{DVec3, Pose};
@@ -164,15 +165,15 @@ impl Scp {
             if !holds {
                 continue;
             }
-            let (part, piece) = (t.part as usize, t.piece as usize);
+            let pair = solids.pair(t.part, t.piece, placed);
             let rank = |p: &Projection<3>| (p.contradictions, p.way_squared());
             let (contradictions, way_squared) = rank(projection);
             let mut least = (contradictions, NEARER * way_squared);
             // The SCP is no nearer than any plane's foot.
             let reach = if contradicted { FAR * depth } else { least.1.sqrt() };
             let (mut best, mut tried) = (t.plane, false);
-            solids.offer_planes_beside(part, piece, placed, &t.plane, -reach, |face| {
-                if solids.is_felt(part, piece, placed, &face, Covered::Unfelt) {
+            pair.offer_planes_beside(&t.plane, -reach, |face| {
+                if pair.is_felt(&face, Covered::Unfelt) {
                     tried = true;
                     rows[i] = row(&face);
                     projection.solve(rows);
@@ -240,8 +241,7 @@ impl Scp {
     /// Whether the planes that push have contacts that take place at the SCP.
     fn takes_place(&self, solids: &Solids, scp: &Placed) -> bool {
         let touches_there = |part: u32, piece: u32, plane: &CFace| {
-            let (a, b) = (solids.part(part as usize), solids.piece(piece as usize));
-            facing_point(a, b, scp, &CFace { distance: 0.0, ..*plane }, FREED).is_some()
+            facing_point(&solids.pair(part, piece, scp), &CFace { distance: 0.0, ..*plane }, FREED).is_some()
         };
         // Of the pieces that one wall is cut into, any may carry the force, and any other be touched.
         let same_wall = |t: &Touch, u: &Touch| {
@@ -272,7 +272,7 @@ impl Scp {
             if s.near.distance > 2.0 * deepest {
                 continue;
             }
-            if solids.is_felt(s.part as usize, s.piece as usize, placed, &s.near, Covered::Unfelt) {
+            if solids.of(s, placed).is_felt(&s.near, Covered::Unfelt) {
                 self.touch(solids, s.part, s.piece, s.near);
             } else if s.near.distance < 0.0 {
                 self.unfelt.push(Unfelt { pair: *s, plane: None });
@@ -304,9 +304,9 @@ impl Scp {
             let mut next = None;
             let mut least = f64::INFINITY;
             for (k, u) in unfelt.iter_mut().enumerate().filter(|(_, u)| !freed(&u.pair.near)) {
-                let (part, piece) = (u.pair.part as usize, u.pair.piece as usize);
-                let hint = &mut hints[part * *pieces + piece];
-                let mut find = || solids.felt_plane(part, piece, placed, &u.pair.near, Covered::Felt, hint);
+                let pair = solids.of(&u.pair, placed);
+                let hint = &mut hints[pair.part * *pieces + pair.piece];
+                let mut find = || pair.felt_plane(&u.pair.near, Covered::Felt, hint);
                 if let Some(plane) = *u.plane.get_or_insert_with(&mut find)
                     && u.pair.near.distance - plane.distance < least
                 {
@@ -322,7 +322,7 @@ impl Scp {
             // An equal plane adds nothing to the force, but its contacts belong to the region.
             let again = !freed(&plane);
             // Near may be a joint that the way out runs along; then the plane of any face is proof as well.
-            if again && solids.a_face_parts(part as usize, piece as usize, &placed.shifted(shift), FREED) {
+            if again && solids.pair(part, piece, &placed.shifted(shift)).a_face_parts(FREED) {
                 continue;
             }
             self.touch(solids, part, piece, plane);
@@ -340,11 +340,11 @@ impl Scp {
             let touches =
                 |c: &CFace| (-FREED..=4.0 * tie_of(solids, part)).contains(&(c.distance + c.normal_w.dot(shift)));
             if touches(&near) {
-                let (part, piece) = (part as usize, piece as usize);
-                let hint = &mut self.hints[part * self.pieces + piece];
-                let plane = solids.felt_plane(part, piece, placed, &near, Covered::Felt, hint);
+                let pair = solids.pair(part, piece, placed);
+                let hint = &mut self.hints[pair.part * self.pieces + pair.piece];
+                let plane = pair.felt_plane(&near, Covered::Felt, hint);
                 if let Some(plane) = plane.filter(touches) {
-                    self.touch(solids, part as u32, piece as u32, plane);
+                    self.touch(solids, part, piece, plane);
                 }
             }
         }

@@ -1,10 +1,11 @@
 //! From tick to tick the same planes hold the SCP nearly always: then there is nothing to search.
 
 use super::{FAR, Scp, Touch, row, tie_of};
+use crate::pair::Covered;
 use crate::placed::Placed;
 use crate::renderer::SCP_MARGIN;
 use crate::sense::Sensed;
-use crate::solid::{Covered, Solids};
+use crate::solid::Solids;
 use spatial::Pose;
 
 /// Part of the depth that the hand may move before the planes are searched anew.
@@ -34,16 +35,16 @@ impl Scp {
         let together = self.touches.iter().filter(|t| t.push > 0.0).count() > 1;
         let farthest = -self.shift.length() - 2.0 * room;
         let is_rivalled = |t: &Touch| {
-            let (part, piece) = (t.part as usize, t.piece as usize);
+            let pair = solids.pair(t.part, t.piece, placed);
             let Some(s) = pairs.iter().find(|s| (s.part, s.piece) == (t.part, t.piece)) else { return true };
             // A face of the pair may become nearer than its plane: either may change by the way that is moved.
-            let by_face = s.near.contact != t.plane.contact
-                && solids.is_rivalled(part, piece, placed, &s.near, &t.plane, t.plane.distance - 2.0 * room);
+            let by_face =
+                s.near.contact != t.plane.contact && pair.is_rivalled(&s.near, &t.plane, t.plane.distance - 2.0 * room);
             // Or let the SCP come nearer.
             let mut by_choice = false;
             if together && t.push > 0.0 && !by_face {
-                solids.offer_planes_beside(part, piece, placed, &t.plane, farthest, |face| {
-                    by_choice = by_choice || solids.is_felt(part, piece, placed, &face, Covered::Unfelt);
+                pair.offer_planes_beside(&t.plane, farthest, |face| {
+                    by_choice = by_choice || pair.is_felt(&face, Covered::Unfelt);
                 });
             }
             by_face || by_choice
@@ -81,7 +82,6 @@ impl Scp {
             self.held = Some(held);
             return Some(depth);
         }
-        let is_felt = |s: &Sensed, covered| solids.is_felt(s.part as usize, s.piece as usize, placed, &s.near, covered);
         self.projection.solve_again(&self.rows);
         if self.projection.contradictions > 0 {
             return None;
@@ -107,14 +107,14 @@ impl Scp {
         self.rows.clear();
         for t in &mut self.touches {
             let s = pairs.iter().find(|s| (s.part, s.piece) == (t.part, t.piece))?;
-            let (part, piece) = (t.part as usize, t.piece as usize);
+            let pair = solids.of(s, placed);
             // A nearest plane that is felt is the one to hold.
             let is_near = s.near.contact == t.plane.contact;
             let covered = if is_near { Covered::Felt } else { Covered::Unfelt };
-            if solids.is_felt(part, piece, placed, &s.near, covered) != is_near {
+            if pair.is_felt(&s.near, covered) != is_near {
                 return None;
             }
-            t.plane = if is_near { s.near } else { solids.applicable_plane(part, piece, placed, t.plane.contact)? };
+            t.plane = if is_near { s.near } else { pair.applicable_plane(t.plane.contact)? };
             (t.first, t.end, t.tie) = (0, 0, tie_of(solids, t.part));
             self.rows.push(row(&t.plane));
         }

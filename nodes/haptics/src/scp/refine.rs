@@ -2,9 +2,10 @@
 
 use super::{FAR, FREED, Scp, Touch, row};
 use crate::compromise::Compromise;
+use crate::pair::Covered;
 use crate::placed::Placed;
 use crate::sense::Sensed;
-use crate::solid::{Covered, Solids};
+use crate::solid::Solids;
 use cspace::CFace;
 use spatial::{DVec3, Pose};
 
@@ -127,19 +128,11 @@ impl Scp {
             if !(inside || loose || all && known.is_none()) {
                 continue;
             }
-            let (part, piece) = (s.part as usize, s.piece as usize);
-            let felt = solids.is_felt(part, piece, &placed, &s.near, Covered::Unfelt);
-            let plane = if felt {
+            let pair = solids.of(&s, &placed);
+            let plane = if pair.is_felt(&s.near, Covered::Unfelt) {
                 Some(s.near)
             } else {
-                solids.felt_plane(
-                    part,
-                    piece,
-                    &placed,
-                    &s.near,
-                    Covered::Felt,
-                    &mut self.hints[part * self.pieces + piece],
-                )
+                pair.felt_plane(&s.near, Covered::Felt, &mut self.hints[pair.part * self.pieces + pair.piece])
             };
             let plane = plane.map(|c| CFace { distance: c.distance - c.normal_w.dot(self.shift), ..c });
             match (known, plane) {
