@@ -43,44 +43,39 @@ impl<'a> Pair<'a> {
     /// covered in part is felt while A's contact or A's middle stands over the open part. (The contact alone does not
     /// decide: deep in a corner it lies inside the other wall, and still this wall must push.)
     fn is_felt_plane(&self, c: &CFace, covered: Covered) -> bool {
-        let Self { a, b, placed, .. } = *self;
-        let at = contact_point_turned(c.contact, a, b, placed.x, &placed.r);
+        let Self { solids: Solids { moving, fixed, .. }, part, piece, a, b, placed } = *self;
+        let at = || contact_point_turned(c.contact, a, b, placed.x, &placed.r);
         let into_a = placed.r.transpose();
         let seen_from_a = |p: DVec3| into_a * (p - placed.x);
         match c.contact {
             BasicContact::TypeB { vertex_a, face_b } => {
-                let face_felt = match self.solids.fixed.cover(self.piece, face_b) {
+                let face_felt = match fixed.cover(piece, face_b) {
                     Cover::Open => true,
                     Cover::Internal => false,
                     Cover::Partial if covered == Covered::Felt => true,
-                    Cover::Partial => [at, placed.point(a.center())]
+                    Cover::Partial => [at(), placed.point(a.center())]
                         .iter()
-                        .any(|p| !self.solids.fixed.is_covered(self.piece, face_b, nearest_in_face(b, face_b, *p))),
+                        .any(|p| !fixed.is_covered(piece, face_b, nearest_in_face(b, face_b, *p))),
                 };
-                face_felt
-                    && (self.solids.moving.is_alone(self.part) || {
-                        self.solids.moving.is_felt_at_vertex(self.part, vertex_a, -(into_a * c.normal_w))
-                    })
+                face_felt && (moving.is_alone(part) || moving.is_felt_at_vertex(part, vertex_a, -(into_a * c.normal_w)))
             }
             BasicContact::TypeA { face_a, vertex_b } => {
-                let face_felt = match self.solids.moving.cover(self.part, face_a) {
+                let face_felt = match moving.cover(part, face_a) {
                     Cover::Open => true,
                     Cover::Internal => false,
                     Cover::Partial if covered == Covered::Felt => true,
-                    Cover::Partial => [at, b.center()].iter().any(|p| {
-                        !self.solids.moving.is_covered(self.part, face_a, nearest_in_face(a, face_a, seen_from_a(*p)))
-                    }),
+                    Cover::Partial => [at(), b.center()]
+                        .iter()
+                        .any(|p| !moving.is_covered(part, face_a, nearest_in_face(a, face_a, seen_from_a(*p)))),
                 };
-                face_felt
-                    && (self.solids.fixed.is_alone(self.piece)
-                        || self.solids.fixed.is_felt_at_vertex(self.piece, vertex_b, c.normal_w))
+                face_felt && (fixed.is_alone(piece) || fixed.is_felt_at_vertex(piece, vertex_b, c.normal_w))
             }
             BasicContact::TypeC { edge_b, .. } => {
-                (self.solids.fixed.is_alone(self.piece)
-                    || self.solids.fixed.is_felt_on_edge(self.piece, edge_b, at, c.normal_w))
-                    && (self.solids.moving.is_alone(self.part) || {
+                let at = at();
+                (fixed.is_alone(piece) || fixed.is_felt_on_edge(piece, edge_b, at, c.normal_w))
+                    && (moving.is_alone(part) || {
                         let on_a = seen_from_a(at + c.normal_w * c.distance);
-                        self.solids.moving.is_felt(self.part, on_a, -(into_a * c.normal_w))
+                        moving.is_felt(part, on_a, -(into_a * c.normal_w))
                     })
             }
         }
