@@ -202,7 +202,8 @@ impl Scp {
             self.take_projection();
             self.wedged = !self.is_plain(solids, placed, depth) && !self.refine(solids, hip, depth);
             if !self.wedged {
-                let depth = self.depth_of_touches();
+                // Either planes may lie deeper than the pairs do: a far one beside a seam, or one that frees a pair at the SCP.
+                let depth = depth.min(self.depth_of_touches());
                 self.begin_to_hold(solids, pairs, hip, placed, depth);
                 return depth;
             }
