@@ -157,7 +157,7 @@ class Flood(unittest.TestCase):
               f"{len(during)} ticks, none lost; in contact {touching:.1%}; steepest force {steepest[0]:.3f}, torque {steepest[1]:.3f} of the limit")
 
     def check_steps(self, ticks):
-        """No force or torque steps by more than its rate allows; a limit that comes down takes the force along."""
+        """No force or torque steps by more than its rate allows; a limit that comes down takes the force along at once."""
         steepest = [0.0, 0.0]
         sides = [("force", "max_force", "max_force_rate"), ("torque", "max_torque", "max_torque_rate")]
         greatest, last = [getattr(ticks[0].gains, limit) for _, limit, _ in sides], ticks[0]
@@ -167,6 +167,7 @@ class Flood(unittest.TestCase):
             for i, (side, limit, rate) in enumerate(sides):
                 target = getattr(tick.gains, limit)
                 greatest[i] += (target - greatest[i]) * tick.dt / (RAMP + tick.dt) if abs(target - greatest[i]) > 1e-6 * target else target - greatest[i]
+                greatest[i] = min(greatest[i], target)  # comes up smoothly, down at once
                 was, now = getattr(last.out_wrench, side), getattr(tick.out_wrench, side)
                 step = math.dist((was.x, was.y, was.z), (now.x, now.y, now.z))
                 allowed = getattr(tick.gains, rate) * tick.dt + max(0.0, norm(was) - greatest[i])

@@ -191,6 +191,7 @@ class ServoNode(unittest.TestCase):
         self.assertEqual(self.servo.end(), 0, self.servo.text)
         self.servo.wait_for_line("ticks=")
         wait_until(lambda: norm(self.wrenches[-1].wrench.force) == 0.0, "the last wrench to be zero")
+        wait_until(lambda: self.states[-1].event == ContactState.EVENT_END, "the end of the last contact state")
 
 
 if __name__ == "__main__":
