@@ -20,7 +20,7 @@ pub struct Sample {
     pub connected: bool,
 }
 
-/// What a device can do; limits the loop.
+/// What a device can do. Commands from elsewhere are shortened to it ([`DeviceSpec::shown`]); the loop itself is limited by its gains.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DeviceSpec {
     /// Name for messages.
