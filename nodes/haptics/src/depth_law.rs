@@ -118,7 +118,7 @@ impl DepthLaw {
             let limit = t.plane.distance + within;
             t.first = self.points.len();
             if let Some(lone) = lone_contact(&pair, &t.plane, within) {
-                self.points.push(lone);
+                push_within(&mut self.points, lone);
             } else {
                 // Along Near's normal no contact can be deeper than Near.
                 let scope = Scope { reach: limit, near_felt: true, wide: law == LawKind::Blended, along_near: true };
@@ -166,7 +166,7 @@ impl DepthLaw {
                     _ => at,
                 };
                 touches[i].first = self.points.len();
-                self.points.push(RegionPoint::of(&t.plane, on_b));
+                push_within(&mut self.points, RegionPoint::of(&t.plane, on_b));
                 touches[i].end = self.points.len();
             }
         }
@@ -221,6 +221,13 @@ impl DepthLaw {
         }
         let p = nearest_point(&self.places, &self.weights, &mut self.order, x0);
         force.cross(x0 - p)
+    }
+}
+
+/// Keeps a contact if there is room.
+fn push_within(points: &mut Vec<RegionPoint>, p: RegionPoint) {
+    if points.len() < points.capacity() {
+        points.push(p);
     }
 }
 
