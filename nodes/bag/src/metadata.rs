@@ -1,6 +1,9 @@
 use crate::{BagError, Qos};
 use serde::Deserialize;
 use std::fmt::Write as _;
+use std::fs::OpenOptions;
+use std::io::ErrorKind;
+use std::os::unix::fs::FileExt;
 use std::path::Path;
 
 /// A topic of a bag as metadata.yaml has it.
@@ -100,10 +103,24 @@ impl Metadata {
     /// Writes metadata.yaml at once: a reader sees the old one or the new one, never half of it.
     pub(crate) fn write(&self, dir: &Path) -> Result<(), BagError> {
         let (path, new) = (dir.join("metadata.yaml"), dir.join("metadata.yaml.new"));
-        std::fs::write(&new, self.to_yaml())
+        let yaml = self.to_yaml();
+        std::fs::write(&new, &yaml)
             .and_then(|()| std::fs::rename(&new, &path))
+            .or_else(|e| {
+                // Best effort: what is left of it only takes room.
+                let _ = std::fs::remove_file(&new);
+                // A disk with no room for a second file still has that of the first, which must count what was just flushed.
+                if e.kind() == ErrorKind::StorageFull { overwrite(&path, &yaml) } else { Err(e) }
+            })
             .map_err(|e| BagError::io("cannot write the bag's metadata", &path, e))
     }
+}
+
+/// Writes over an existing file within the room that it has.
+fn overwrite(path: &Path, text: &str) -> std::io::Result<()> {
+    let file = OpenOptions::new().write(true).open(path)?;
+    file.write_all_at(text.as_bytes(), 0)?;
+    file.set_len(text.len() as u64)
 }
 
 /// A YAML double-quoted scalar; JSON's escapes are a subset of YAML's.
@@ -132,5 +149,21 @@ impl ForeignMetadata {
         }
         let text = std::fs::read_to_string(dir.join("metadata.yaml")).ok()?;
         serde_saphyr::from_str::<Document>(&text).ok().map(|d| d.rosbag2_bagfile_information)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn overwriting_leaves_the_new_text_alone() {
+        let path = std::env::temp_dir().join(format!("cspace-haptics-metadata-{}", std::process::id()));
+        std::fs::write(&path, "a long text of before").unwrap();
+        for text in ["shorter", "and a longer one than the one of before"] {
+            overwrite(&path, text).unwrap();
+            assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+        }
+        std::fs::remove_file(&path).unwrap();
     }
 }
