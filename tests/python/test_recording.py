@@ -50,8 +50,10 @@ class Recording(unittest.TestCase):
         self.assertEqual(verdict.returncode, 0, verdict.stdout + verdict.stderr)
 
     def test_killed_at_any_moment_the_bag_lacks_at_most_a_second(self):
-        servo = self.start_servo()
         for moment in (0.15, 0.7, 1.6, 2.9):
+            # Each with a servo of its own: for a while after a kill -9 the middleware still serves the dead reader, whose port
+            # the next recorder may have got, and a batch can be lost on it.
+            servo = self.start_servo()
             bag = self.folder / f"bag-{moment}"
             recorder = self.start("haptic_recorder", output=bag)
             recorder.wait_for_line("/haptic_servo/ticks")
@@ -59,6 +61,7 @@ class Recording(unittest.TestCase):
             time.sleep(moment)  # the moment is the test's input, not a wait for something
             recorder.end(signal.SIGKILL)
             killed = time.time()
+            self.assertEqual(servo.end(), 0, servo.text)
             summary = subprocess.run([BIN / "cspace-haptics", "bag", "summary", bag], capture_output=True, text=True, timeout=60)
             if killed - begun < 1.0 and summary.returncode == 1:
                 continue  # all of it may be within the last second
@@ -68,7 +71,6 @@ class Recording(unittest.TestCase):
             recorded = next(float(l.split()[2]) for l in summary.stdout.splitlines() if l.startswith("time recorded"))
             self.assertGreater(recorded, killed - begun - 1.0, summary.stdout)
             self.assertIn("ticks lost      0", summary.stdout)
-        self.assertEqual(servo.end(), 0, servo.text)
 
     def test_a_full_disk_ends_the_recording_and_leaves_what_was_recorded(self):
         disk = self.folder / "disk"
