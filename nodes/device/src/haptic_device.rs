@@ -20,7 +20,8 @@ pub struct Sample {
     pub connected: bool,
 }
 
-/// What a device can do. Commands from elsewhere are shortened to it ([`DeviceSpec::shown`]); the loop itself is limited by its gains.
+/// What a device can do. Commands from elsewhere are shortened to it ([`DeviceSpec::shown`]); the loop itself is limited by
+/// its gains.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DeviceSpec {
     /// Name for messages.

@@ -129,12 +129,12 @@ impl DepthLaw {
         self.stand_in(solids, placed);
         for t in &self.scp.touches {
             let points = &self.points[t.first..t.end];
-            self.places.clear();
-            self.places.extend(points.iter().map(|p| p.point_w));
-            let kind = FormationKind::of(&self.places, t.plane.normal_w, t.plane.contact);
             if points.is_empty() {
                 continue;
             }
+            self.places.clear();
+            self.places.extend(points.iter().map(|p| p.point_w));
+            let kind = FormationKind::of(&self.places, t.plane.normal_w, t.plane.contact);
             self.multiple |= kind >= FormationKind::EdgeFace;
             result.formation.kind = result.formation.kind.max(kind);
             for p in points {

@@ -76,7 +76,7 @@ impl View {
         // A C-obstacle is as thick as its two bodies together; a quarter of that cannot jump from one side to the other.
         let thickness = 2.0 * (part + piece);
         let reach = if thickness.is_finite() { (0.25 * thickness).clamp(SHORTEST, LONGEST) } else { LONGEST };
-        let lever = world.moving.iter().flat_map(|p| p.corner_ids().map(|v| p.vertex(v).length())).fold(0.0, f64::max);
+        let lever = solids.lever();
         let pairs = world.moving.len() * world.fixed.len();
         Self {
             sense: Sense::new(world.clone(), reach),

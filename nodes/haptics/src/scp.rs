@@ -102,7 +102,7 @@ impl Scp {
             around: Sense::new(world.clone(), BESIDE * size),
             last: None,
             held: None,
-            lever: world.moving.iter().flat_map(|p| p.corner_ids().map(|v| p.vertex(v).length())).fold(0.0, f64::max),
+            lever: solids.lever(),
             wedged: false,
             looks: 0,
             size,

@@ -31,6 +31,11 @@ impl Solids {
         &self.world.fixed[piece].polyhedron
     }
 
+    /// Farthest point of A from its origin, metres.
+    pub fn lever(&self) -> f64 {
+        self.world.moving.iter().flat_map(|p| p.corner_ids().map(|v| p.vertex(v).length())).fold(0.0, f64::max)
+    }
+
     /// Whether both sides of the pair are uncut bodies: then every contact is felt.
     pub fn is_seamless(&self, part: usize, piece: usize) -> bool {
         self.moving.is_alone(part) && self.fixed.is_alone(piece)

@@ -22,6 +22,10 @@ pub(super) struct Held {
 }
 
 impl Held {
+    fn new(pairs: &[Sensed], hip: &Pose, depth: f64) -> Self {
+        Self { at: *hip, room2: (ROOM * depth).powi(2), inside: inside(pairs) }
+    }
+
     fn reaches(&self, hip: &Pose, lever: f64) -> bool {
         let turn2 = 4.0 * (hip.rotation - self.at.rotation).length_squared();
         2.0 * ((hip.translation - self.at.translation).length_squared() + lever * lever * turn2) <= self.room2
@@ -49,17 +53,12 @@ impl Scp {
             }
             by_face || by_choice
         };
-        self.held = (!self.touches.iter().any(is_rivalled)).then_some(Held {
-            at: *hip,
-            room2: room * room,
-            inside: inside(pairs),
-        });
+        self.held = (!self.touches.iter().any(is_rivalled)).then(|| Held::new(pairs, hip, depth));
     }
 
     /// Lets the planes between which the part is wedged be held while the hand stays within [`ROOM`].
     pub(super) fn hold_wedged(&mut self, pairs: &[Sensed], hip: &Pose, depth: f64) {
-        let room = ROOM * depth;
-        self.held = Some(Held { at: *hip, room2: room * room, inside: inside(pairs) });
+        self.held = Some(Held::new(pairs, hip, depth));
     }
 
     /// The depth and, in `touches`, the planes that hold the SCP if those of the last tick still do: each takes place where the
@@ -122,6 +121,7 @@ impl Scp {
     }
 }
 
+/// How many pairs penetrate.
 fn inside(pairs: &[Sensed]) -> usize {
     pairs.iter().filter(|s| s.near.distance < 0.0).count()
 }
