@@ -32,10 +32,11 @@ enum Surroundings {
     Plate,
 }
 
-/// `free` hovers. `plate` pushes 0.2 mm into a plate, the only obstacle. `corner` pushes to the bottom and into a corner, 0.2 mm deep, so that the peg leans on two walls and the
-/// bottom. `five` does the same in a corner of five pieces, two to a wall: the hand is inside of all of them, and the
-/// proxy touches three to five. `jammed` also turns the peg about the vertical and about an edge, farther than the
-/// hole's clearance lets it: the proxy stands against all four walls and the bottom, five pieces at once.
+/// `free` hovers. `plate` pushes 0.2 mm into a plate, the only obstacle. `corner` pushes to the bottom and into a corner, 0.2
+/// mm deep, so that the peg leans on two walls and the bottom. `five` does the same in a corner of five pieces, two to a wall:
+/// the hand is inside of all of them, and the proxy touches three to five. `jammed` also turns the peg about the vertical and
+/// about an edge, farther than the hole's clearance lets it: the proxy stands against all four walls and the bottom, five
+/// pieces at once.
 pub const CASES: [Case; 5] = [
     pressed("free", DVec3::new(0.0, 0.0, 0.03), false, Surroundings::Hole),
     pressed("plate", DVec3::new(2e-4, 1.5e-4, 0.0058), true, Surroundings::Plate),

@@ -19,7 +19,8 @@ pub use values::{
 
 impl Config {
     /// Reads a ROS 2 parameter file: `NODE: {ros__parameters: {...}}`, applied in order, or the bare tree of parameters.
-    /// Where a section is of `haptic_servo`, those of other nodes are passed over; else every node name will do. What it does not name keeps its default; switches of the node alone are passed over.
+    /// Where a section is of `haptic_servo`, those of other nodes are passed over; else every node name will do. What it does
+    /// not name keeps its default; switches of the node alone are passed over.
     ///
     /// # Errors
     /// The first parameter that is unknown, of the wrong type or out of range, or why the text is no parameter file.
