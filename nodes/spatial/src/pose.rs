@@ -55,9 +55,13 @@ impl Pose {
         DMat3::from_quat(self.rotation)
     }
 
-    /// The rotation vector (radians, outer axes, angle in `[0, pi]`) that takes `self`'s orientation to `to`'s.
+    /// The rotation vector (radians, outer axes, angle in `[0, pi]`) that takes `self`'s orientation to `to`'s; exactly zero if
+    /// they are the same.
     #[must_use]
     pub fn rotation_to(&self, to: &Self) -> DVec3 {
+        if self.rotation == to.rotation {
+            return DVec3::ZERO;
+        }
         let mut q = to.rotation * self.rotation.conjugate();
         if q.w < 0.0 {
             q = -q;
