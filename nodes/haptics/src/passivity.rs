@@ -21,7 +21,7 @@ pub struct PassivityLimits {
     pub max_damping: f64,
     /// Lever by which rotation is weighed against translation, metres.
     pub lever: f64,
-    /// Energy owed beyond which it cannot keep up, J.
+    /// Energy given to the hand beyond what it has put in at which it cannot keep up, J.
     pub budget: f64,
     /// Delay between measuring and showing beyond the hold of a tick, s.
     pub delay: f64,
@@ -77,7 +77,8 @@ impl Passivity {
         let loss = work(&local, moved) + (held.stored - self.stored - held.ramped);
         self.account -= if loss > 0.0 { (loss - held.unsure).max(0.0) } else { loss };
         self.remote -= work(&remote, moved);
-        self.account = self.account.clamp(-limits.budget, SURPLUS);
+        // What the coupling holds without having been paid for stays owed until it is let go of: forgiven, it would go to the hand.
+        self.account = self.account.clamp(-limits.budget - held.stored, SURPLUS);
         self.remote = self.remote.clamp(-limits.budget, REMOTE_SURPLUS);
         self.stored = held.stored;
     }
@@ -165,10 +166,10 @@ impl Passivity {
         self.shown[0] = (local, remote);
     }
 
-    /// Whether the controller cannot keep up: the budget is used up.
+    /// Whether the controller cannot keep up: the hand has got more than it has put in, by the whole budget.
     #[must_use]
     pub fn exhausted(&self, limits: &PassivityLimits) -> bool {
-        self.account <= -limits.budget || self.remote <= -limits.budget
+        self.stored + self.account <= -limits.budget || self.remote <= -limits.budget
     }
 
     /// Closes the account.
@@ -181,16 +182,17 @@ fn work(wrench: &Wrench, moved: &Displacement) -> f64 {
     wrench.force.dot(moved.linear) + wrench.torque.dot(moved.angular)
 }
 
-/// What the coupling holds as the hand can get it back, J: where the limiter cuts a spring's force to the share `r`, its
-/// energy `U` counts `U (2 r - r^2)` only. `energy` is the law's, `wrench` its own wrench; force over `scale` motion.
+/// What the coupling holds as the hand can get it back, J, while only `share` of the wrench is shown: where the limiter cuts a
+/// spring's force to the part `r`, its energy `U` counts `U (2 r - r^2)` only. `energy` is the law's, `wrench` its own wrench;
+/// force over `scale` motion.
 #[must_use]
-pub fn returnable_energy(energy: f64, wrench: &Wrench, gains: &Gains, scale: f64) -> f64 {
+pub fn returnable_energy(energy: f64, wrench: &Wrench, share: f64, gains: &Gains, scale: f64) -> f64 {
     let force = wrench.force.length();
     let of_force = (0.5 * force * force / gains.stiffness).min(energy);
     let cut = |r: f64| r * (2.0 - r);
-    let r_force = limit_factor(force, gains.max_force);
-    let r_torque = limit_factor(wrench.torque.length(), gains.max_torque);
-    of_force * cut(r_force) / scale + (energy - of_force) * cut(r_torque)
+    let r_force = limit_factor(share * force, gains.max_force);
+    let r_torque = limit_factor(share * wrench.torque.length(), gains.max_torque);
+    share * (of_force * cut(r_force) / scale + (energy - of_force) * cut(r_torque))
 }
 
 #[cfg(test)]
@@ -258,6 +260,22 @@ mod tests {
         let mut p = Passivity::default();
         p.observe(&still, &Held { ramped: 1e-3, ..held(1e-3) }, DT, &LIMITS);
         assert_eq!(p.owed(), 0.0);
+    }
+
+    #[test]
+    fn what_is_stored_unpaid_stays_owed_beyond_the_budget() {
+        let mut p = Passivity::default();
+        let still = Displacement::default();
+        p.observe(&still, &held(0.5), DT, &LIMITS);
+        assert_eq!((p.owed(), p.exhausted(&LIMITS)), (0.5, false), "the hand has got nothing yet");
+        let spring = Wrench::new(DVec3::Z, DVec3::ZERO);
+        let out = Displacement { linear: DVec3::Z * 1e-3, angular: DVec3::ZERO };
+        assert_eq!(p.affordable(&spring, &out, DT, &LIMITS), 0.0);
+        p.observe(&still, &held(0.0), DT, &LIMITS);
+        assert_eq!(p.owed(), 0.0, "let go of");
+        p.shown(spring, Wrench::ZERO);
+        p.observe(&Displacement { linear: DVec3::Z, ..still }, &held(0.0), DT, &LIMITS);
+        assert!(p.owed() == LIMITS.budget && p.exhausted(&LIMITS), "the hand has got it");
     }
 
     #[test]
@@ -337,14 +355,14 @@ mod tests {
         }
 
         #[test]
-        fn a_cut_springs_energy_is_the_work_to_let_it_go(stretch in 1e-5..0.1, max in 0.1..20.0) {
+        fn a_cut_springs_energy_is_the_work_to_let_it_go(stretch in 1e-5..0.1, max in 0.1..20.0, share in 0.1..1.0) {
             let gains = Gains { stiffness: K, max_force: max, ..Default::default() };
             let wrench = Wrench::new(DVec3::X * (K * stretch), DVec3::ZERO);
-            let energy = returnable_energy(0.5 * K * stretch * stretch, &wrench, &gains, 1.0);
+            let energy = returnable_energy(0.5 * K * stretch * stretch, &wrench, share, &gains, 1.0);
             let n = 20_000;
             let work: f64 = (0..n).map(|i| {
                 let s = stretch * (f64::from(i) + 0.5) / f64::from(n);
-                f64::min(K * s, max) * stretch / f64::from(n)
+                f64::min(share * K * s, max) * stretch / f64::from(n)
             }).sum();
             prop_assert!((energy - work).abs() < 1e-6 * work);
         }

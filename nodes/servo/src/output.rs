@@ -48,6 +48,7 @@ pub struct Output {
     passivity_limits: PassivityLimits,
     limiter: Limiter,
     ramp: f64,
+    last_ramp: f64,
     relief: f64,
     share: f64,
     stretching: Stretching,
@@ -72,6 +73,7 @@ impl Output {
             },
             limiter: Limiter::default(),
             ramp: 0.0,
+            last_ramp: 0.0,
             relief: 1.0,
             share: 0.0,
             stretching: Stretching::new(config.stability.angular_resolution),
@@ -123,10 +125,13 @@ impl Output {
     fn control(&mut self, r: &Rendered<'_>, gains: &Gains, dt: f64, health: &mut Health) -> Wrench {
         self.stretching.step(r.hip, r.law, gains.law, dt);
         let limits = self.passivity_limits;
-        let returnable = returnable_energy(r.law.energy, &r.law.wrench, gains, r.scale);
-        let last_share = std::mem::replace(&mut self.share, self.ramp * self.relief);
-        let ramped = (self.share - last_share) * returnable;
-        let stiffness = if returnable > 0.0 {
+        let returnable = |share| returnable_energy(r.law.energy, &r.law.wrench, share, gains, r.scale);
+        let last_ramp = std::mem::replace(&mut self.last_ramp, self.ramp);
+        self.share = self.ramp * self.relief;
+        let stored = returnable(self.share);
+        // Only the ramp is asked for: what the relief gives back must be paid for.
+        let ramped = stored - returnable(last_ramp * self.relief);
+        let stiffness = if stored > 0.0 {
             let turn = match gains.law {
                 LawKind::Proxy => gains.rotation_stiffness,
                 _ => self.stretching.rotation_stiffness(),
@@ -136,7 +141,7 @@ impl Output {
             (0.0, 0.0)
         };
         let unsure = 0.5 * (stiffness.0 * self.resolution.0.powi(2) + stiffness.1 * self.resolution.1.powi(2));
-        let held = Held { stored: self.share * returnable, ramped, unsure };
+        let held = Held { stored, ramped, unsure };
         self.passivity.observe(r.moved, &held, dt, &limits);
         if !gains.passivity {
             self.relief = 1.0;
@@ -169,7 +174,7 @@ impl Output {
     fn cut(&mut self) {
         self.limiter.cut();
         self.passivity.reset();
-        (self.ramp, self.share) = (0.0, 0.0);
+        (self.ramp, self.last_ramp, self.share) = (0.0, 0.0, 0.0);
     }
 
     /// The energy account, J.

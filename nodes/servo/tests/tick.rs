@@ -138,7 +138,10 @@ fn gains_and_laws_change_without_a_jump() {
         }
         let r = tick.step(&input(n + 1 + i, pressed(0.002), gains));
         let step = (r.out_wrench.force - last.force).length();
-        assert!(step < 0.15, "tick {i}: {step} N");
+        // Only a limit that is lowered holds at once.
+        assert!(step < 0.15 || i == 900, "tick {i}: {step} N");
+        // What was added to the hand's energy by a stiffer spring is owed when it is let go: the force does not fade meanwhile.
+        assert!((r.out_wrench.force.z - 6.0).abs() < 0.02 || !(295..900).contains(&i), "tick {i}: {:?}", r.out_wrench);
         last = r.out_wrench;
     }
     assert!((last.force.z - 3.0).abs() < 1e-3, "limited to 3 N of 6: {last:?}");
@@ -228,6 +231,23 @@ fn whatever_happens_the_wrench_is_finite_and_within_its_limits() {
                 assert!(r.out_wrench.force.length() <= g.max_force * (1.0 + 1e-12));
                 assert!(r.out_wrench.torque.length() <= g.max_torque * (1.0 + 1e-12));
                 assert!(!r.health.any(Health::ZERO_FORCE) || r.out_wrench == Wrench::ZERO);
+            }
+        }
+    }
+}
+
+#[test]
+fn free_motion_costs_nothing_however_the_part_is_turned() {
+    // In most orientations a quaternion times its own inverse is no exact identity: that must not pass for contact.
+    for law in LAWS {
+        let config = Config { gains: Gains { law, ..Gains::default() }, ..Config::default() };
+        for k in 0..50 {
+            let mut tick = Tick::new(&scene("corner"), &config);
+            let turn = DQuat::from_scaled_axis(DVec3::new(0.3, -0.7, 0.5) * f64::from(k));
+            for i in 0..20 {
+                let place = DVec3::new(0.05, 0.02, 0.2) + DVec3::new(1e-3, -2e-3, 1e-3) * i as f64;
+                let r = tick.step(&input(i, Pose::new(place, turn), config.gains));
+                assert_eq!((r.law_wrench, r.out_wrench), (Wrench::ZERO, Wrench::ZERO), "{law:?}, {turn}");
             }
         }
     }

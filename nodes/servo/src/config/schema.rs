@@ -192,7 +192,7 @@ static SCHEMA: &[ParamSpec] = &[
         "J",
         restart,
         [passivity.budget],
-        "Energy owed beyond which the force is reduced."
+        "Energy given to the hand beyond what it has put in at which the force is reduced."
     ),
     choice!("device.driver", restart, [device.driver], ["simulated" => Driver::Simulated, "replay" => Driver::Replay, "spacemouse" => Driver::SpaceMouse, "topic" => Driver::Topic],
         "Where the hand's pose comes from: simulated operator, file of poses, SpaceMouse, or another node's topics."),

@@ -112,7 +112,7 @@ pub struct PassivityConfig {
     pub max_damping: f64,
     /// Lever by which rotation enters the account beside translation, metres.
     pub lever: f64,
-    /// Energy owed to the hand's side at which the force is reduced, J.
+    /// Energy given to the hand beyond what it has put in at which the force is reduced, J.
     pub budget: f64,
 }
 
