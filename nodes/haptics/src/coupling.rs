@@ -18,6 +18,7 @@ pub struct Coupling {
     last: Option<(DVec3, DVec3)>,
     /// Low-passed rate of stretch, m/s and rad/s.
     rate: (DVec3, DVec3),
+    law: Option<LawKind>,
 }
 
 impl Coupling {
@@ -39,7 +40,9 @@ impl Coupling {
             self.rate = (DVec3::ZERO, DVec3::ZERO);
             return Wrench::ZERO;
         }
-        let share = low_pass_share(cutoff, dt);
+        let changed = self.law.replace(gains.law).is_some_and(|l| l != gains.law);
+        // Another law has its proxy elsewhere: that is no motion either, and the hand goes on as it did.
+        let share = if changed { 0.0 } else { low_pass_share(cutoff, dt) };
         self.rate.0 += ((stretch.0 - last.0) / dt - self.rate.0) * share;
         self.rate.1 += ((stretch.1 - last.1) / dt - self.rate.1) * share;
         if self.rate.0.length_squared() < TINY && stretch.0 == last.0 {

@@ -22,12 +22,15 @@ impl GainRamp {
         if g != *target {
             let share = dt / (TIME + dt);
             let t = target;
+            // What the torque goes by is how many times its old value a blend depth is, so its way up is a growth.
+            let growing = |depth: f64| if depth > 0.0 { 2.0 * depth } else { f64::INFINITY };
+            let blend_depth = t.blend_depth.min(growing(g.blend_depth));
             for (value, to) in [
                 (&mut g.stiffness, t.stiffness),
                 (&mut g.damping, t.damping),
                 (&mut g.rotation_stiffness, t.rotation_stiffness),
                 (&mut g.rotation_damping, t.rotation_damping),
-                (&mut g.blend_depth, t.blend_depth),
+                (&mut g.blend_depth, blend_depth),
                 (&mut g.max_force, t.max_force),
                 (&mut g.max_torque, t.max_torque),
                 (&mut g.friction_static, t.friction_static),
