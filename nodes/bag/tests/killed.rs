@@ -13,7 +13,8 @@ use std::time::{Duration, Instant};
 const DIR: &str = "BAG_TEST_DIR";
 const BATCH: u64 = 10;
 
-/// Not a test by itself: the process that gets killed. Says after every batch how many ticks it has handed to the writer.
+/// Not a test by itself: the process that gets killed. Says after every batch how many ticks it has handed to the writer,
+/// and when it began and ended to, ms by its own clock.
 #[test]
 #[ignore = "started by the test below"]
 fn writer_process() {
@@ -32,8 +33,9 @@ fn writer_process() {
             .collect();
         let message = TickBatch { version: 1, ticks, ..TickBatch::default() };
         let stamp = Stamp(support::EPOCH + batch as i64 * 10_000_000);
+        let began = start.elapsed().as_millis();
         bag.write_message(topic, stamp, &message).unwrap();
-        println!("\nwritten {}", (batch + 1) * BATCH);
+        println!("\nwritten {} {began} {}", (batch + 1) * BATCH, start.elapsed().as_millis());
         let next = Duration::from_millis(10) * (batch as u32 + 1);
         std::thread::sleep(next.saturating_sub(start.elapsed()));
     }
@@ -48,7 +50,11 @@ impl Drop for Killed {
     }
 }
 
-/// Starts the writer, kills it after `life`, and tells the ticks it said it had written by then and by one second before.
+/// Starts the writer, kills it after `life`, and tells the ticks it said it had written by then, and by one second before
+/// its last write began.
+///
+/// That second is the writer's: what it loses is what it got since it last flushed, and neither it nor we can help it if
+/// the machine lets it stand still before the kill.
 fn killed_writer(dir: &std::path::Path, life: Duration) -> (u64, u64) {
     let mut child = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "writer_process", "--ignored", "--nocapture"])
@@ -59,21 +65,23 @@ fn killed_writer(dir: &std::path::Path, life: Duration) -> (u64, u64) {
         .unwrap();
     let out = BufReader::new(child.stdout.take().unwrap());
     let mut child = Killed(child);
-    let mut times: Vec<(Instant, u64)> = Vec::new();
-    let mut killed = None;
+    // Ticks, begin and end of each write, ms.
+    let mut said: Vec<[u64; 3]> = Vec::new();
+    let mut killed = false;
     for line in out.lines().map_while(Result::ok) {
-        if let Some(n) = line.strip_prefix("written ").and_then(|n| n.parse().ok()) {
-            times.push((Instant::now(), n));
-        }
-        if killed.is_none() && times.first().is_some_and(|(t, _)| t.elapsed() >= life) {
-            killed = Some(Instant::now());
+        let Some(numbers) = line.strip_prefix("written ") else { continue };
+        let numbers: Vec<u64> = numbers.split(' ').filter_map(|n| n.parse().ok()).collect();
+        // The kill may cut the last line short.
+        said.extend(<[u64; 3]>::try_from(numbers));
+        if !killed && said.last().is_some_and(|[_, _, end]| u128::from(*end) >= life.as_millis()) {
+            killed = true;
             child.0.kill().unwrap();
         }
     }
-    let killed = killed.expect("the writer lives until it is killed");
-    let second_before =
-        times.iter().take_while(|(t, _)| *t + Duration::from_secs(1) <= killed).last().map_or(0, |t| t.1);
-    (times.last().unwrap().1, second_before)
+    assert!(killed, "the writer lives until it is killed");
+    let [written, last_begun, _] = *said.last().unwrap();
+    let second_before = said.iter().take_while(|[_, _, end]| end + 1000 <= last_begun).last().map_or(0, |s| s[0]);
+    (written, second_before)
 }
 
 #[test]

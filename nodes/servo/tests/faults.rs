@@ -301,16 +301,24 @@ fn a_hog_at_higher_priority_makes_one_late_tick_and_no_burst() {
     if !servo.handle.grants().all_granted() {
         return eprintln!("SKIPPED: no real-time priority here: {}", servo.handle.grants());
     }
-    std::thread::sleep(Duration::from_millis(200));
+    let mut records = Vec::new();
+    let mut run_on = |ticks: usize| {
+        let (until, deadline) = (records.len() + ticks, Instant::now() + Duration::from_secs(30));
+        while records.len() < until {
+            assert!(Instant::now() < deadline, "the loop stands still");
+            std::thread::sleep(Duration::from_millis(5));
+            records.extend(std::iter::from_fn(|| servo.records.pop()));
+        }
+    };
+    run_on(200);
     let hog = std::thread::spawn(|| {
         let _ = ThreadSetup { priority: 60, cpu: 0, lock_memory: false }.apply();
         let until_ns = monotonic_ns() + 20_000_000;
         while monotonic_ns() < until_ns {}
     });
     hog.join().unwrap();
-    std::thread::sleep(Duration::from_millis(200));
+    run_on(200);
     let status = servo.handle.join().unwrap();
-    let records: Vec<TickRecord> = std::iter::from_fn(|| servo.records.pop()).collect();
     let latest = records.iter().max_by(|a, b| a.input.dt.total_cmp(&b.input.dt)).unwrap();
     println!("| CPU hog 20 ms | latest tick stands for {:.0} ms | {} |", latest.input.dt * 1e3, latest.health);
     assert!(latest.input.dt > 0.015 && latest.health.any(Health::LATE), "dt {}", latest.input.dt);

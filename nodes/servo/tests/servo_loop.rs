@@ -4,6 +4,7 @@ use device::{DeviceSpec, HapticDevice, Sample};
 use realtime::{ThreadSetup, monotonic_ns};
 use servo::{Commands, Health, LoopConfig, LoopError, TickInput, TickRecord, spawn};
 use spatial::{DVec3, Stamp, Wrench};
+use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -59,10 +60,12 @@ fn push_when_enabled(input: &TickInput) -> TickRecord {
     }
 }
 
+const PATIENCE: Duration = Duration::from_secs(30);
+
 fn wait_until(mut done: impl FnMut() -> bool) {
-    let deadline = Instant::now() + Duration::from_secs(20);
+    let deadline = Instant::now() + PATIENCE;
     while !done() {
-        assert!(Instant::now() < deadline, "waited 20 s in vain");
+        assert!(Instant::now() < deadline, "waited {PATIENCE:?} in vain");
         std::thread::sleep(Duration::from_micros(200));
     }
 }
@@ -71,24 +74,32 @@ fn wait_until(mut done: impl FnMut() -> bool) {
 fn every_tick_reaches_both_rings_in_order_on_an_even_grid() {
     for rate_hz in [250.0, 1000.0, 4000.0] {
         let (device, _) = probe();
-        let mut servo = spawn(device, push_when_enabled, Commands::default(), &config(rate_hz)).unwrap();
-        let mut records = Vec::new();
-        wait_until(|| {
-            records.extend(std::iter::from_fn(|| servo.records.pop()));
-            records.len() >= 100
-        });
+        // The hundredth tick ends when the loop has been told to stop: no ring fills, however late this thread is.
+        let ((say, hundredth), (told, wait)) = (channel(), channel());
+        let step = move |input: &TickInput| {
+            if input.sequence == 99 {
+                let _ = say.send(());
+                let _ = wait.recv_timeout(PATIENCE);
+            }
+            push_when_enabled(input)
+        };
+        let mut servo = spawn(device, step, Commands::default(), &config(rate_hz)).unwrap();
+        hundredth.recv_timeout(PATIENCE).unwrap();
+        servo.handle.stop();
+        told.send(()).unwrap();
         let status = servo.handle.join().unwrap();
-        records.extend(std::iter::from_fn(|| servo.records.pop()));
+        let records: Vec<TickRecord> = std::iter::from_fn(|| servo.records.pop()).collect();
         let pictures: Vec<TickRecord> = std::iter::from_fn(|| servo.pictures.pop()).collect();
         assert_eq!(records, pictures);
-        assert_eq!(status.ticks, records.len() as u64);
+        assert_eq!((status.ticks, records.len()), (100, 100));
         assert_eq!(status.wakeup.summary().count, status.ticks);
         for (n, pair) in records.windows(2).enumerate() {
             let [a, b] = [&pair[0].input, &pair[1].input];
             assert_eq!((a.sequence, b.sequence), (n as u64, n as u64 + 1));
             // The stamps say the same as dt, but for the slow following of the wall clock.
             let gap = (b.stamp.0 - a.stamp.0) as f64 * 1e-9;
-            assert!((gap / b.dt - 1.0).abs() < 0.01, "{gap} s between stamps, dt {}", b.dt);
+            let even = (gap / b.dt - 1.0).abs() < 0.01;
+            assert!(even || b.outside.any(Health::CLOCK_STEP), "{gap} s between stamps, dt {}", b.dt);
             let periods = b.dt * rate_hz;
             assert!((periods - periods.round()).abs() < 1e-9);
             assert_eq!(periods > 1.5, b.outside.any(Health::LATE));
@@ -162,7 +173,7 @@ fn a_tick_that_overruns_is_followed_by_one_late_tick_and_no_burst() {
     let late = &records[21].input;
     assert!(late.outside.any(Health::LATE) && late.dt > 0.009, "dt {}", late.dt);
     assert!(records[21].wakeup_ns >= 9_000_000);
-    let elapsed = (records[50].input.stamp.0 - records[20].input.stamp.0) as f64 * 1e-9;
+    let elapsed: f64 = records[21..=50].iter().map(|r| r.input.dt).sum();
     assert!(elapsed > 0.038, "30 ticks in {elapsed} s: a burst");
     assert!(servo.handle.join().unwrap().skipped >= 9);
 }
