@@ -3,6 +3,7 @@ use crate::{BagError, BagOptions, BagReader, BagWriter, Damage, Messages, Qos, c
 use servo::TickRecord;
 use std::collections::VecDeque;
 use std::path::Path;
+use std::time::Duration;
 
 /// The ticks that one message of an offline bag carries.
 const BATCH: usize = 20;
@@ -214,7 +215,9 @@ impl TickWriter {
     /// # Errors
     /// If `dir` exists or cannot be written.
     pub fn create(dir: &Path, scene: &SceneDescription, configuration: &ServoConfiguration) -> Result<Self, BagError> {
-        let mut bag = BagWriter::create(dir, BagOptions::default())?;
+        // Chunks end by their size alone, so that the same ticks give the same bytes however long it takes.
+        let options = BagOptions { flush_interval: Duration::MAX, ..BagOptions::default() };
+        let mut bag = BagWriter::create(dir, options)?;
         let topic = bag.add::<TickBatch>("/haptic_servo/ticks", &[Qos::RELIABLE])?;
         let header = Header { frame_id: "world".to_owned(), ..Header::default() };
         let batch = TickBatch {

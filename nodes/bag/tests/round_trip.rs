@@ -22,6 +22,24 @@ fn ticks_come_back_bit_for_bit() {
 }
 
 #[test]
+fn the_same_ticks_make_the_same_bytes_however_long_it_takes() {
+    let dir = tempfile::tempdir().unwrap();
+    let ticks = support::ticks(500, 8);
+    let bytes = |name: &str, pause: Duration| {
+        let path = dir.path().join(name).join("run");
+        let slow = ticks.iter().inspect(|t| {
+            if t.input.sequence == 250 {
+                std::thread::sleep(pause);
+            }
+        });
+        write_ticks(&path, &support::scene(), &support::configuration(), slow).unwrap();
+        ["run_0.mcap", "metadata.yaml"].map(|file| std::fs::read(path.join(file)).unwrap())
+    };
+    let longer_than_a_recorder_waits = BagOptions::default().flush_interval * 2;
+    assert!(bytes("quick", Duration::ZERO) == bytes("slow", longer_than_a_recorder_waits));
+}
+
+#[test]
 fn numbers_that_are_not_numbers_come_back_too() {
     let mut tick = support::ticks(1, 2)[0];
     tick.input.gains.proxy_speed = f64::INFINITY;
