@@ -145,7 +145,7 @@ impl DeviceNode {
         let header = Header { stamp: self.host.now().into(), frame_id: self.frame_id.clone() };
         // The force is gone whether or not anybody can be told.
         let told = self.shown.say(&WrenchStamped { header, wrench: Wrench::ZERO.into() });
-        self.host.spin_once(Duration::from_millis(20));
+        self.host.linger(Duration::from_millis(100));
         outcome.and(told)
     }
 

@@ -5,7 +5,7 @@ use spatial::Stamp;
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// One node in one process: its name, its clock and the signals that end it.
 ///
@@ -91,6 +91,14 @@ impl Host {
     /// Handles what has come, or waits up to `timeout` for it: at most one message of each subscription.
     pub fn spin_once(&mut self, timeout: Duration) {
         self.node.spin_once(timeout);
+    }
+
+    /// Lives on for `time`, whatever comes meanwhile: what was just sent is on its way, and goes when its publisher goes.
+    pub fn linger(&mut self, time: Duration) {
+        let end = Instant::now() + time;
+        while let Some(rest) = end.checked_duration_since(Instant::now()).filter(|r| !r.is_zero()) {
+            self.spin_once(rest);
+        }
     }
 
     /// Whether a signal asked the process to end.

@@ -3,6 +3,7 @@
 //! A node is made of a [`Host`] (name, clock, signals), a [`parameters::ParameterServer`] and what it does; the
 //! executables in `src/bin` put them together.
 
+mod aftermath;
 pub mod convert;
 pub mod device_node;
 pub mod failure;
@@ -18,6 +19,7 @@ pub mod recorder;
 pub mod servo_node;
 mod talker;
 
+pub use aftermath::take_what_is_left;
 pub use failure::{Failure, Outcome};
 pub use host::Host;
 pub use inbox::Inbox;

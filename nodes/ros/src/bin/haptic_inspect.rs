@@ -2,15 +2,12 @@
 
 use cspace_haptics::parameters::ParameterServer;
 use cspace_haptics::pictures::{PictureOptions, Pictures};
-use cspace_haptics::{Host, Outcome, failure};
+use cspace_haptics::{Host, Outcome, failure, take_what_is_left};
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 const USAGE: &str = "haptic_inspect: draws a haptic servo's physical space and C-space with rerun.\n\
     Parameters: output (a .rrd file), viewer (draw in a running viewer), address (its HOST:PORT), servo, scene.";
-/// After the signal: ticks on their way are waited for, as long as they come, at most this long.
-const LAST_WAIT: Duration = Duration::from_secs(2);
-const QUIET: Duration = Duration::from_millis(150);
 
 fn main() -> ExitCode {
     failure::run(body)
@@ -27,13 +24,7 @@ fn body() -> Outcome<()> {
         pictures.turn(&mut host, Duration::from_millis(20))?;
         parameters.serve(host.now(), &mut |_| Ok(()))?;
     }
-    let end = Instant::now();
-    let mut last = end;
-    while end.elapsed() < LAST_WAIT && last.elapsed() < QUIET {
-        if pictures.turn(&mut host, Duration::from_millis(10))? {
-            last = Instant::now();
-        }
-    }
+    take_what_is_left(|| pictures.turn(&mut host, Duration::from_millis(10)))?;
     let said = pictures.finish()?;
     host.say(&said);
     Ok(())

@@ -2,15 +2,12 @@
 
 use cspace_haptics::parameters::ParameterServer;
 use cspace_haptics::recorder::{Recorder, RecorderOptions};
-use cspace_haptics::{Host, Outcome, failure};
+use cspace_haptics::{Host, Outcome, failure, take_what_is_left};
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 const USAGE: &str = "haptic_recorder: records topics into a rosbag2 MCAP folder.\n\
     Parameters: output (a new folder), topics, nodes, all, compression, split_size_mb, split_duration, flush_interval.";
-/// After the signal: the messages on their way are waited for, as long as they come, at most this long.
-const LAST_WAIT: Duration = Duration::from_secs(2);
-const QUIET: Duration = Duration::from_millis(150);
 
 fn main() -> ExitCode {
     failure::run(body)
@@ -26,13 +23,7 @@ fn body() -> Outcome<()> {
         recorder.turn(&mut host, Duration::from_millis(20))?;
         parameters.serve(host.now(), &mut |_| Ok(()))?;
     }
-    let end = Instant::now();
-    let mut last = end;
-    while end.elapsed() < LAST_WAIT && last.elapsed() < QUIET {
-        if recorder.turn(&mut host, Duration::from_millis(10))? {
-            last = Instant::now();
-        }
-    }
+    take_what_is_left(|| recorder.turn(&mut host, Duration::from_millis(10)))?;
     let summary = recorder.finish()?;
     host.say(&summary.to_string());
     Ok(())

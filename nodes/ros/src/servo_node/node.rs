@@ -271,10 +271,7 @@ impl ServoNode {
         if let Some(mut link) = link {
             link.turn(now)?;
         }
-        // What was just sent is on its way when the publishers go: give it the time to arrive.
-        for _ in 0..10 {
-            self.host.spin_once(Duration::from_millis(20));
-        }
+        self.host.linger(Duration::from_millis(200));
         let status = joined.map_err(|e| Failure::new(e.to_string()))?;
         self.host.say(&format!(
             "ticks={} late={} lost={} wakeup: {}",

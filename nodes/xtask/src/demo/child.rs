@@ -134,15 +134,19 @@ impl Family {
     /// The first child that has ended, with all it said.
     pub fn dead(&mut self) -> Option<usize> {
         let child = self.children.iter().position(|child| child.status.is_some())?;
-        // Its last words may still be on their way; grandchildren could keep the output open for ever.
+        self.hear_out(child);
+        Some(child)
+    }
+
+    /// The last words of one that has ended may still be on their way; grandchildren could keep the output open for ever.
+    fn hear_out(&mut self, child: usize) {
         let patience = Instant::now() + Duration::from_secs(1);
         while self.children[child].open_outputs > 0 && Instant::now() < patience {
             self.listen_for(Duration::from_millis(20));
         }
-        Some(child)
     }
 
-    /// Asks one child to end, politely first, and waits until it has.
+    /// Asks one child to end, politely first, and waits until it has and all it said was heard.
     pub fn stop(&mut self, child: usize, patience: Duration) -> ExitStatus {
         for (signal, patience) in
             [(Signal::INT, patience), (Signal::TERM, Duration::from_secs(2)), (Signal::KILL, Duration::from_secs(5))]
@@ -151,6 +155,7 @@ impl Family {
             let until = Instant::now() + patience;
             while Instant::now() < until {
                 if let Some(status) = self.children[child].status {
+                    self.hear_out(child);
                     return status;
                 }
                 self.listen_for(Duration::from_millis(20));
