@@ -4,6 +4,7 @@ import os
 import threading
 
 import rclpy
+from cspace_haptics_msgs.msg import TickBatch
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
@@ -64,6 +65,32 @@ class Client:
         future = client.call_async(request)
         wait_until(future.done, f"answer of {name}")
         return future.result()
+
+
+class Ticks:
+    """What a servo tells of its ticks, kept as bytes until somebody asks: making objects of them all is slower than a busy
+    machine's ticks come."""
+
+    def __init__(self, client, topic):
+        # Room for a minute: Python may be slow to take even the bytes.
+        self.heard = client.listen(TickBatch, topic, qos(reliable=True, depth=6000), raw=True)
+        self.decoded = []
+
+    def batches(self):
+        """All so far."""
+        self.decoded += messages(self.heard[len(self.decoded):], TickBatch)
+        return self.decoded
+
+    def all(self):
+        return [tick for batch in self.batches() for tick in batch.ticks]
+
+    def since(self, count):
+        """Those of all batches but the first `count`."""
+        return [tick for batch in messages(self.heard[count:], TickBatch) for tick in batch.ticks]
+
+    def newest(self):
+        wait_until(lambda: self.heard, "a tick")
+        return deserialize_message(self.heard[-1], TickBatch).ticks[-1]
 
 
 def messages(heard, kind):
