@@ -84,10 +84,18 @@ impl BagReader {
         self.files.iter().map(|f| f.path.as_path())
     }
 
-    /// Whether every file has its proper beginning and end.
+    /// Whether every file has its proper beginning and end, and none is missing.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.files.iter().all(|f| f.complete)
+        self.files.iter().all(|f| f.complete) && self.missing_files().is_empty()
+    }
+
+    /// The files that metadata.yaml names and that are not there.
+    #[must_use]
+    pub fn missing_files(&self) -> Vec<String> {
+        let named = self.metadata.iter().flat_map(|m| &m.relative_file_paths);
+        let names = named.filter_map(|path| Some(Path::new(path).file_name()?.to_string_lossy().into_owned()));
+        names.filter(|name| !self.dir.join(name).exists()).collect()
     }
 
     /// Distribution of ROS that recorded it, as metadata.yaml says; empty if it does not.

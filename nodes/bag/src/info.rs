@@ -9,8 +9,10 @@ use std::path::Path;
 pub struct BagInfo {
     /// Files and their sizes in bytes.
     pub files: Vec<(String, u64)>,
-    /// Whether every file has its proper end.
+    /// Whether every file has its proper end, and none is missing.
     pub complete: bool,
+    /// Files that metadata.yaml names and that are not there.
+    pub missing_files: Vec<String>,
     /// Distribution of ROS that recorded it; empty if unknown.
     pub ros_distro: String,
     /// The topics with the number of messages of each.
@@ -60,6 +62,7 @@ impl BagInfo {
         let mut info = Self {
             files: reader.files().map(|f| (name(f), size(f))).collect(),
             complete: reader.is_complete(),
+            missing_files: reader.missing_files(),
             ros_distro: reader.ros_distro().to_owned(),
             topics: reader.topics().iter().map(|t| (t.clone(), 0)).collect(),
             times: None,

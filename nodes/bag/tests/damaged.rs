@@ -151,6 +151,26 @@ fn damaged_metadata_does_not_matter() {
 }
 
 #[test]
+fn a_file_that_is_missing_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("run");
+    let options = BagOptions { max_file_duration: Some(Duration::from_millis(50)), ..BagOptions::default() };
+    let mut writer = BagWriter::create(&path, options).unwrap();
+    let topic = writer.add::<TickBatch>("/s/ticks", &[Qos::RELIABLE]).unwrap();
+    for tick in support::ticks(150, 6) {
+        let batch = TickBatch { version: 1, ticks: vec![bag::tick_to_msg(&tick)], ..TickBatch::default() };
+        writer.write_message(topic, tick.input.stamp, &batch).unwrap();
+    }
+    writer.finish().unwrap();
+    let whole = BagInfo::read(&path).unwrap();
+    assert!(whole.complete && whole.missing_files.is_empty() && whole.files.len() == 3);
+    std::fs::remove_file(path.join("run_1.mcap")).unwrap();
+    let rest = BagInfo::read(&path).unwrap();
+    assert_eq!((rest.complete, rest.messages()), (false, 100));
+    assert_eq!(rest.missing_files, ["run_1.mcap"]);
+}
+
+#[test]
 fn empty_things_are_told_apart() {
     let dir = tempfile::tempdir().unwrap();
     let reason = |p: &Path| BagReader::open(p).unwrap_err().to_string();

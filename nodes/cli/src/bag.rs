@@ -65,6 +65,11 @@ fn info(dir: &Path) -> Result<(), Failure> {
     for (name, bytes) in &info.files {
         say(&format!("file      {name}, {:.3} MB", *bytes as f64 * 1e-6))?;
     }
+    for name in &info.missing_files {
+        say(&format!(
+            "missing   {name}: metadata.yaml names it, but it is not in the folder; put it back beside the others"
+        ))?;
+    }
     let messages = info.messages();
     if let Some((first, last)) = info.times {
         let seconds = (last.0 - first.0) as f64 * 1e-9;
@@ -102,5 +107,9 @@ fn info(dir: &Path) -> Result<(), Failure> {
         }
         _ => {}
     }
-    say(if info.complete { "complete  yes" } else { "complete  no: its writer was stopped, or it is damaged" })
+    say(match (info.complete, info.missing_files.is_empty()) {
+        (true, _) => "complete  yes",
+        (false, true) => "complete  no: its writer was stopped, or it is damaged",
+        (false, false) => "complete  no: a file is missing",
+    })
 }
