@@ -65,9 +65,12 @@ impl<'a> FacePair<'a> {
     }
 
     /// The sides of B's face as planes along the sight: outward normals, not of unit length, and offsets.
-    pub fn sides_of_b(&self) -> impl Iterator<Item = (DVec3, f64)> + Clone + use<'a> {
-        let Self { plane_b, sight, slope, .. } = *self;
+    pub fn sides_of_b(&self) -> impl Iterator<Item = (DVec3, f64)> + use<'a> {
+        let Self { plane_b, sight, slope, scope, .. } = *self;
         self.pair.b.face_sides(self.face_b).iter().map(move |side| {
+            if !scope.along_near {
+                return (side.normal, side.distance);
+            }
             let lean = side.normal.dot(sight);
             (side.normal * slope - plane_b.normal * lean, side.distance * slope - plane_b.distance * lean)
         })

@@ -42,30 +42,51 @@ impl RegionPoint {
 /// What of an edge of A lies over B's face: from where to where, 0 to 1, and the sides of B's face that cut it.
 #[derive(Clone, Copy, Debug)]
 struct Span {
-    enter: f64,
-    leave: f64,
+    enter: Cut,
+    leave: Cut,
+}
+
+/// Where an edge is cut, 0 to 1.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    at: f64,
+    /// Where the side's own line is crossed: what lies outside by a little counts as inside.
+    line: f64,
     /// `NONE` where the edge's own end lies over the face.
-    entered: u32,
-    left: u32,
+    side: u32,
+}
+
+impl Cut {
+    const NONE: u32 = u32::MAX;
 }
 
 impl Span {
-    const NONE: u32 = u32::MAX;
-    const WHOLE: Self = Self { enter: 0.0, leave: 1.0, entered: Self::NONE, left: Self::NONE };
+    const WHOLE: Self =
+        Self { enter: Cut { at: 0.0, line: 0.0, side: Cut::NONE }, leave: Cut { at: 1.0, line: 1.0, side: Cut::NONE } };
 
-    /// Cuts by the side `j`, beyond which the ends lie by `p` and `q`, metres.
-    fn cut(&mut self, j: u32, p: f64, q: f64) {
-        if p > 0.0 {
-            let at = if q > 0.0 { f64::INFINITY } else { p / (p - q) };
-            if at >= self.enter {
-                (self.enter, self.entered) = (at, j);
+    /// Cuts by the side `side`, beyond which the ends lie by `p` and `q`, metres; up to `same` counts as inside.
+    #[inline]
+    fn cut(&mut self, side: u32, p: f64, q: f64, same: f64) {
+        let (outside_p, outside_q) = (p > same, q > same);
+        if outside_p == outside_q {
+            if outside_p {
+                self.enter.at = f64::INFINITY;
             }
-        } else if q > 0.0 {
-            let at = p / (p - q);
-            if at <= self.leave {
-                (self.leave, self.left) = (at, j);
-            }
+            return;
         }
+        let per = 1.0 / (p - q);
+        let cut = Cut { at: (p - same) * per, line: (p * per).clamp(0.0, 1.0), side };
+        if outside_p {
+            if cut.at >= self.enter.at {
+                self.enter = cut;
+            }
+        } else if cut.at <= self.leave.at {
+            self.leave = cut;
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.enter.at > self.leave.at
     }
 }
 
@@ -86,9 +107,8 @@ pub(crate) struct Scope {
 /// Scratch for clipping; grows at construction only.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Clipper {
-    /// The vertices of A's face, W, and how far they lie beyond the side in hand, metres.
+    /// The vertices of A's face, W.
     ring: Vec<DVec3>,
-    beyond: Vec<f64>,
     /// Which sides of B's face have something of A's face beyond them.
     cuts: Vec<bool>,
     /// Of each edge of A's face, which leaves the vertex of the same index.
@@ -110,7 +130,6 @@ impl Clipper {
         let sides = world.fixed.iter().map(|p| most(&p.polyhedron)).max().unwrap_or(0);
         Self {
             ring: Vec::with_capacity(room),
-            beyond: Vec::with_capacity(room),
             cuts: Vec::with_capacity(sides),
             spans: Vec::with_capacity(room),
             pairs: Vec::with_capacity(MAX_PAIRS),
@@ -197,48 +216,39 @@ impl Clipper {
     /// Gives `add` the vertices of A's face that lie over B's face, and where A's edges cross B's: A's edges are cut by the sides
     /// of B's face (Cyrus and Beck 1978).
     fn edges_of_a(&mut self, faces: &FacePair<'_>, same: f64, add: &mut impl FnMut(Corner, DVec3)) {
-        let Self { ring, beyond, cuts, spans, .. } = self;
+        let Self { ring, cuts, spans, .. } = self;
         ring.clear();
         ring.extend(faces.ring_a().iter().map(|v| faces.pair.placed.point(faces.pair.a.vertex(*v))));
-        let n = ring.len();
-        let next = |i: usize| if i + 1 < n { i + 1 } else { 0 };
         spans.clear();
-        spans.resize(n, Span::WHOLE);
+        spans.resize(ring.len(), Span::WHOLE);
         cuts.clear();
-        let sides = faces.sides_of_b();
-        for (j, (outward, offset)) in sides.clone().enumerate() {
-            // What lies outside by no more than `same` counts as inside.
-            beyond.clear();
-            beyond.extend(ring.iter().map(|p| outward.dot(*p) - offset - same));
-            let is_cutting = beyond.iter().any(|h| *h > 0.0);
+        let Some(last) = ring.len().checked_sub(1) else { return };
+        for (j, (outward, offset)) in faces.sides_of_b().enumerate() {
+            let mut is_cutting = false;
+            let mut before = outward.dot(ring[last]) - offset;
+            let mut edge = last;
+            for (i, p) in ring.iter().enumerate() {
+                let beyond = outward.dot(*p) - offset;
+                is_cutting |= beyond > same;
+                spans[edge].cut(j as u32, before, beyond, same);
+                (before, edge) = (beyond, i);
+            }
             cuts.push(is_cutting);
-            if !is_cutting {
-                continue;
-            }
-            for (i, span) in spans.iter_mut().enumerate() {
-                span.cut(j as u32, beyond[i], beyond[next(i)]);
-            }
         }
-        // Where the side's own line is crossed.
-        let crossed = |i: usize, j: u32| {
-            let (p, q) = (ring[i], ring[next(i)]);
-            let (outward, offset) = sides.clone().nth(j as usize)?;
-            let (p_beyond, q_beyond) = (outward.dot(p) - offset, outward.dot(q) - offset);
-            Some(p + (q - p) * (p_beyond / (p_beyond - q_beyond)).clamp(0.0, 1.0))
-        };
+        let mut end_height = faces.height(ring[0]);
         for (i, span) in spans.iter().enumerate() {
-            if span.enter > span.leave || faces.height(ring[i]).min(faces.height(ring[next(i)])) > faces.highest {
+            let (p, q) = (ring[i], ring[if i < last { i + 1 } else { 0 }]);
+            let height = std::mem::replace(&mut end_height, faces.height(q));
+            if span.is_empty() || height.min(end_height) > faces.highest {
                 continue;
             }
-            if span.entered == Span::NONE {
-                add(Corner::OfA(i), ring[i]);
-            } else if let Some(p) = crossed(i, span.entered) {
-                add(Corner::Crossing(i, span.entered as usize), p);
+            if span.enter.side == Cut::NONE {
+                add(Corner::OfA(i), p);
+            } else {
+                add(Corner::Crossing(i, span.enter.side as usize), p + (q - p) * span.enter.line);
             }
-            if span.left != Span::NONE
-                && let Some(p) = crossed(i, span.left)
-            {
-                add(Corner::Crossing(i, span.left as usize), p);
+            if span.leave.side != Cut::NONE {
+                add(Corner::Crossing(i, span.leave.side as usize), p + (q - p) * span.leave.line);
             }
         }
     }

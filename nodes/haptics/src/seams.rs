@@ -1,6 +1,6 @@
 //! Seams between convex pieces of one body: which contacts are artefacts of the cutting.
 
-use cspace::{EdgeId, FaceId, Polyhedron, VertexId, cut_out, polygon_area};
+use cspace::{EdgeId, FaceId, Plane, Polyhedron, VertexId, cut_out, polygon_area};
 use spatial::DVec3;
 use std::sync::Arc;
 
@@ -38,12 +38,13 @@ pub(crate) struct Seams {
     live_edges: Vec<Vec<bool>>,
     /// For each piece, face and side: how much of the side the surface goes on beyond.
     sides: Vec<Vec<Vec<Cover>>>,
-    /// For each piece and vertex the neighbours that the vertex may belong to.
+    /// For each piece and vertex the neighbours that the vertex belongs to.
     at_vertex: Vec<Vec<Vec<u32>>>,
     /// For each piece and edge the neighbours that some of the edge's points may belong to.
     at_edge: Vec<Vec<Vec<u32>>>,
-    /// For each piece and face the neighbours that some place just outside of the face may lie in.
-    over_face: Vec<Vec<Vec<u32>>>,
+    /// For each piece, face, and neighbour that some place just outside of the face may lie in: the neighbour's planes which do not
+    /// have all such places inside.
+    over_face: Vec<Vec<Vec<Vec<Plane>>>>,
     /// For each piece and face the faces of other pieces that lie in its plane and look the same way.
     flush: Vec<Vec<Vec<(u32, FaceId)>>>,
     tolerance: f64,
@@ -90,9 +91,9 @@ impl Seams {
             flush,
             tolerance,
         };
-        seams.at_vertex = (0..n).map(|a| seams.near_vertices(a)).collect();
+        seams.at_vertex = (0..n).map(|a| seams.owners_of_vertices(a)).collect();
         seams.at_edge = (0..n).map(|a| seams.near_edges(a)).collect();
-        seams.over_face = (0..n).map(|a| seams.near_faces(a)).collect();
+        seams.over_face = (0..n).map(|a| seams.planes_over_faces(a)).collect();
         seams.live_edges = (0..n).map(|a| seams.find_live_edges(a)).collect();
         seams.sides = (0..n).map(|a| seams.find_sides(a)).collect();
         seams
@@ -108,8 +109,12 @@ impl Seams {
         self.neighbors[piece].iter().copied().filter(|&other| !outside(&self.pieces[other as usize])).collect()
     }
 
-    fn near_vertices(&self, piece: usize) -> Vec<Vec<u32>> {
-        self.pieces[piece].vertices().iter().map(|v| self.near(piece, &[*v])).collect()
+    fn owners_of_vertices(&self, piece: usize) -> Vec<Vec<u32>> {
+        let owners = |v: &DVec3| {
+            let owns = |other: &u32| self.pieces[*other as usize].contains(*v, self.tolerance);
+            self.neighbors[piece].iter().copied().filter(owns).collect()
+        };
+        self.pieces[piece].vertices().iter().map(owners).collect()
     }
 
     fn near_edges(&self, piece: usize) -> Vec<Vec<u32>> {
@@ -117,13 +122,19 @@ impl Seams {
         p.edges().map(|e| self.near(piece, &p.edge(e).vertices.map(|v| p.vertex(v)))).collect()
     }
 
-    fn near_faces(&self, piece: usize) -> Vec<Vec<u32>> {
+    fn planes_over_faces(&self, piece: usize) -> Vec<Vec<Vec<Plane>>> {
         let p = &self.pieces[piece];
-        let lifted = |f| {
+        let over = |f| {
             let up = p.face_plane(f).normal * (4.0 * self.tolerance);
-            p.face_vertices(f).iter().map(|v| p.vertex(*v) + up).collect::<Vec<_>>()
+            let lifted: Vec<DVec3> = p.face_vertices(f).iter().map(|v| p.vertex(*v) + up).collect();
+            let cuts = |plane: &Plane| lifted.iter().any(|v| plane.signed_distance(*v) > -2.0 * self.tolerance);
+            let planes = |other: u32| {
+                let q = &self.pieces[other as usize];
+                q.faces().map(|g| q.face_plane(g)).filter(cuts).collect()
+            };
+            self.near(piece, &lifted).into_iter().map(planes).collect()
         };
-        p.faces().map(|f| self.near(piece, &lifted(f))).collect()
+        p.faces().map(over).collect()
     }
 
     fn find_live_edges(&self, piece: usize) -> Vec<bool> {
@@ -168,7 +179,7 @@ impl Seams {
         let outside = point + self.pieces[piece].face_plane(face).normal * (4.0 * self.tolerance);
         self.over_face[piece][face.index()]
             .iter()
-            .any(|&other| self.pieces[other as usize].contains(outside, -self.tolerance))
+            .any(|planes| planes.iter().all(|plane| plane.signed_distance(outside) <= -self.tolerance))
     }
 
     /// Whether the piece borders on others at all: if not, all its contacts are felt.
@@ -219,7 +230,7 @@ impl Seams {
     /// The same of a contact at a vertex.
     pub fn is_felt_at_vertex(&self, piece: usize, vertex: VertexId, normal: DVec3) -> bool {
         let point = self.pieces[piece].vertex(vertex);
-        self.is_felt_among(&self.at_vertex[piece][vertex.index()], point, normal)
+        self.at_vertex[piece][vertex.index()].iter().all(|&other| self.supports(other, point, normal))
     }
 
     /// The same of a contact at `point` on an edge, between its ends.
@@ -229,13 +240,15 @@ impl Seams {
 
     fn is_felt_among(&self, others: &[u32], point: DVec3, normal: DVec3) -> bool {
         others.iter().all(|&other| {
-            let q = &self.pieces[other as usize];
-            if !q.contains(point, self.tolerance) {
-                return true;
-            }
-            let top = q.vertex(q.support(normal));
-            normal.dot(top - point) <= FLAT * 2.0 * q.size() + self.tolerance
+            !self.pieces[other as usize].contains(point, self.tolerance) || self.supports(other, point, normal)
         })
+    }
+
+    /// Whether the plane through `point` with the outward `normal` has no more of the piece beyond it than a flat seam lets out.
+    fn supports(&self, piece: u32, point: DVec3, normal: DVec3) -> bool {
+        let q = &self.pieces[piece as usize];
+        let highest = normal.dot(point) + FLAT * 2.0 * q.size() + self.tolerance;
+        q.corner_ids().all(|v| normal.dot(q.vertex(v)) <= highest)
     }
 }
 
