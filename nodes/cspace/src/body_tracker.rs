@@ -25,8 +25,8 @@ pub struct ActivePair {
 struct Seen {
     piece: u32,
     state: PairState,
-    /// The part's odometer up to which the pair is known to stay beyond the margin.
-    rest_until: f64,
+    /// The part's odometer up to which the pair is known to stay apart.
+    apart_until: f64,
 }
 
 /// One convex part of A and the pieces in its view.
@@ -126,24 +126,30 @@ impl BodyTracker {
     /// Follows A to `pose` (A in W): the pairs within the margin, ordered by part and piece. A pair that comes into
     /// view while it is free does not count as reseeded. A pose that is not finite leaves everything as it was.
     pub fn step(&mut self, pose: &Pose) -> &[ActivePair] {
+        self.step_within(pose, self.margin)
+    }
+
+    /// The same for the pairs within `margin` metres, which may be less than the tracker's and differ from step to step.
+    pub fn step_within(&mut self, pose: &Pose, margin: f64) -> &[ActivePair] {
         if !(pose.translation.is_finite() && pose.rotation.is_finite()) {
             return &self.active;
         }
         self.active.clear();
-        let Self { parts, pieces, tree, margin, scratch, active, overflow, .. } = self;
+        let Self { parts, pieces, tree, margin: most, scratch, active, overflow, .. } = self;
+        let margin = margin.min(*most);
         *overflow = 0;
         for (index, part) in parts.iter_mut().enumerate() {
             let at = At::new(&part.body, pose);
-            part.look(tree, &at, *margin, overflow);
+            part.look(tree, &at, *most, overflow);
             for seen in &mut part.seen {
-                if part.odometer < seen.rest_until {
+                if part.odometer < seen.apart_until - margin {
                     continue;
                 }
                 let fresh = !seen.state.is_seeded();
                 let mut tracked = seen.state.step(&part.body, &pieces[seen.piece as usize], scratch, &at);
                 tracked.reseeded &= !(fresh && tracked.is_free());
-                seen.rest_until = part.odometer + (tracked.distance - *margin);
-                if tracked.distance <= *margin {
+                seen.apart_until = part.odometer + tracked.distance;
+                if tracked.distance <= margin {
                     active.push(ActivePair { part: index as u32, piece: seen.piece, tracked });
                 }
             }
@@ -188,7 +194,7 @@ impl Part {
 fn tree_into(tree: &Bvh, center: DVec3, radius: f64, seen: &mut Vec<Seen>, overflow: &mut u32) {
     tree.query(center, radius, |piece| {
         if seen.len() < seen.capacity() {
-            seen.push(Seen { piece, state: PairState::NEW, rest_until: f64::NEG_INFINITY });
+            seen.push(Seen { piece, state: PairState::NEW, apart_until: f64::NEG_INFINITY });
         } else {
             *overflow += 1;
         }

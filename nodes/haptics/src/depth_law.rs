@@ -101,7 +101,7 @@ impl DepthLaw {
 
     /// The penetration of the hand's pose, metres, `>= 0`.
     pub fn depth(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose) -> f64 {
-        self.scp.depth(solids, pairs, &Placed::new(hip))
+        self.scp.depth(solids, pairs, hip, &Placed::new(hip))
     }
 
     /// Clips the contact regions of the penetrating pairs and states the formation.

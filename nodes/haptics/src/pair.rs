@@ -9,7 +9,10 @@ use cspace::{
 use spatial::DVec3;
 
 /// Cosine between normals from which on two C-faces of a pair count as one.
-const SAME: f64 = 0.999;
+pub(crate) const SAME: f64 = 0.999;
+/// Normals with a larger cosine still count as one when they have turned by [`TURN`], radians.
+const NEARLY_SAME: f64 = 0.9995;
+pub(crate) const TURN: f64 = 0.01;
 /// What the cosine between the normals of one face may lack of one.
 const SAME_NORMAL: f64 = 1e-12;
 
@@ -103,22 +106,25 @@ impl<'a> Pair<'a> {
 
     /// Where `near` takes place and another C-face meets it there, within `tie` metres: the felt one, of a face at Near's features
     /// or beside its face, that leaves most of the motion free which Near forbids. The pair is free on the side of either.
-    pub fn tied_plane(&self, near: &CFace, tie: f64) -> Option<CFace> {
+    /// Also by how much less than `tie` lies the plane that comes nearest to it, metres, up to `room`: none ties within so small a motion.
+    pub fn tied_plane(&self, near: &CFace, tie: f64, room: f64) -> (Option<CFace>, f64) {
         let mut best = None;
         let mut against = SAME;
-        self.offer_planes_beside(near, -tie, |face| {
+        let mut nearest = -tie - room;
+        self.offer_planes_beside(near, nearest, NEARLY_SAME, |face| {
+            nearest = nearest.max(face.distance);
             let alike = face.normal_w.dot(near.normal_w);
-            if alike < against && self.is_felt(&face, Covered::Unfelt) {
+            if face.distance >= -tie && alike < against && self.is_felt(&face, Covered::Unfelt) {
                 against = alike;
                 best = Some(face);
             }
         });
-        best
+        (best, -tie - nearest)
     }
 
-    /// Offers the planes of the faces at Near's features, or beside its face, that differ from Near's and whose signed distance is
-    /// `least` (metres) or more.
-    pub fn offer_planes_beside(&self, near: &CFace, least: f64, mut offer: impl FnMut(CFace)) {
+    /// Offers the planes of the faces at Near's features, or beside its face, that differ from Near's by a cosine of less than `alike`
+    /// and whose signed distance is `least` (metres) or more.
+    pub fn offer_planes_beside(&self, near: &CFace, least: f64, alike: f64, mut offer: impl FnMut(CFace)) {
         let Self { a, b, placed, .. } = *self;
         let (faces_a, vertex_a, faces_b, vertex_b): (&[FaceId], _, &[FaceId], _) = match near.contact {
             BasicContact::TypeA { face_a, vertex_b } => {
@@ -136,7 +142,7 @@ impl<'a> Pair<'a> {
         for face_b in faces_b {
             let plane = b.face_plane(*face_b);
             if plane.signed_distance(at_a) >= least
-                && plane.normal.dot(near.normal_w) < SAME
+                && plane.normal.dot(near.normal_w) < alike
                 && plane.signed_distance(placed.point(a.center())) - a.inner_radius() >= least
                 && !self.solids.is_internal_b(self.piece, *face_b)
             {
@@ -150,7 +156,7 @@ impl<'a> Pair<'a> {
         for face_a in faces_a {
             let plane = a.face_plane(*face_a);
             if plane.signed_distance(at_b) >= least
-                && (placed.r * plane.normal).dot(near.normal_w) > -SAME
+                && (placed.r * plane.normal).dot(near.normal_w) > -alike
                 && plane.signed_distance(placed.seen_from_a(b.center())) - b.inner_radius() >= least
                 && !self.solids.is_internal_a(self.part, *face_a)
             {
@@ -159,6 +165,17 @@ impl<'a> Pair<'a> {
                     offer(face);
                 }
             }
+        }
+    }
+
+    /// By how much the normal of a contact turns at most for each radian that the part turns.
+    pub fn leverage(&self, contact: BasicContact) -> f64 {
+        match contact {
+            BasicContact::TypeC { edge_a, edge_b } => {
+                let along_a = self.placed.r * self.a.edge_direction(edge_a);
+                1.0 / along_a.cross(self.b.edge_direction(edge_b)).length()
+            }
+            _ => 1.0,
         }
     }
 
@@ -191,16 +208,19 @@ impl<'a> Pair<'a> {
         best
     }
 
-    /// Whether some other face than that of `plane`, felt where it is open, has a signed distance of more than `known`, metres.
-    pub fn is_rivalled(&self, near: &CFace, plane: &CFace, known: f64) -> bool {
-        let mut rivalled = false;
-        self.each_face(near, known, |face, known| {
-            rivalled |= face.distance > known
+    /// How far the signed distance of `plane` exceeds those of all other faces that are felt where they are open, up to `most`, metres.
+    pub fn lead_over_faces(&self, near: &CFace, plane: &CFace, most: f64) -> f64 {
+        let mut rival = plane.distance - most;
+        self.each_face(near, rival, |face, known| {
+            if face.distance > known
                 && face.normal_w.dot(plane.normal_w) < 1.0 - SAME_NORMAL
-                && self.is_felt_plane(&face, Covered::Felt);
-            known
+                && self.is_felt_plane(&face, Covered::Felt)
+            {
+                rival = face.distance;
+            }
+            rival
         });
-        rivalled
+        plane.distance - rival
     }
 
     /// Gives `each` the contacts of the faces whose signed distances may exceed what is known, metres: at first `known`, then
@@ -348,9 +368,12 @@ fn edges_of_b<'b>(b: &'b Polyhedron, c: &BasicContact) -> &'b [EdgeId] {
 /// The foot of `p` on the face's plane, drawn into the face side by side: near its nearest point, and inside.
 fn nearest_in_face(body: &Polyhedron, face: FaceId, p: DVec3) -> DVec3 {
     let plane = body.face_plane(face);
+    let foot = p - plane.normal * plane.signed_distance(p);
+    if body.face_sides(face).iter().all(|side| side.signed_distance(foot) <= 0.0) {
+        return foot;
+    }
     let ring = body.face_vertices(face);
     let middle = ring.iter().map(|v| body.vertex(*v)).sum::<DVec3>() / ring.len() as f64;
-    let foot = p - plane.normal * plane.signed_distance(p);
     // Towards the middle, as far as the side asks that cuts most.
     let mut share = 1.0_f64;
     for side in body.face_sides(face) {

@@ -16,6 +16,10 @@ const ROUNDS: usize = 4;
 const ROUNDS_FAST: usize = 16;
 /// Steps below this (metres at the body's reach) are applied to the contacts seen, without looking again.
 const SMALL: f64 = 1e-8;
+/// Contacts with gaps larger than this many ways of the hand in the tick, and than this (metres), are looked at only when a step
+/// may lead to them.
+const AHEAD: f64 = 8.0;
+const NEARBY: f64 = 1e-5;
 /// Steps on the contacts seen once they are small, at most, and the size below which they end (metres at the body's reach).
 const POLISH: usize = 3;
 const VANISHING: f64 = 1e-11;
@@ -35,6 +39,8 @@ pub(crate) struct Proxy {
     projection: Projection<6>,
     friction: Friction,
     last_hip: Option<Pose>,
+    /// How far the proxy looks around in this tick, metres.
+    sight: f64,
     /// Motion since the last look, metres.
     stale: f64,
 }
@@ -111,6 +117,7 @@ impl Proxy {
             projection: Projection::new(),
             friction,
             last_hip: None,
+            sight: f64::INFINITY,
             stale: 0.0,
         }
     }
@@ -128,32 +135,33 @@ impl Proxy {
         self.pose = *pose;
         self.view.reset();
         self.friction.reset();
-        self.view.look(solids, &self.pose);
-        self.stale = 0.0;
+        self.sight = f64::INFINITY;
+        self.look(solids);
         self.push_out(solids, &Metric::new(gains), 16);
     }
 
     /// Follows the hand for one tick. Returns true if the proxy had to be seeded anew.
     pub fn follow(&mut self, solids: &Solids, hip: &Pose, gains: &Gains, dt: f64) -> bool {
         let lever = self.view.lever;
-        let last = self.last_hip.replace(*hip);
-        let jumped = last.is_none_or(|last| {
+        let moved = self.last_hip.replace(*hip).map(|last| {
             let moved = Step { dp: hip.translation - last.translation, dtheta: last.rotation_to(hip) };
-            moved.way(lever) > self.view.jump
+            moved.way(lever)
         });
+        let jumped = moved.is_none_or(|way| way > self.view.jump);
         if jumped {
             self.seed(solids, hip, gains);
         }
         let metric = Metric::new(gains);
         let safe = self.pose;
-        // Edge rounding: the proxy may catch up with the hand at no more than the stated speed.
-        let mut budget = match last {
-            Some(last) if !jumped => {
-                let moved = Step { dp: hip.translation - last.translation, dtheta: last.rotation_to(hip) };
-                moved.way(lever) + gains.proxy_speed.max(0.0) * dt.max(0.0)
+        let (sight, mut budget) = match moved {
+            // Edge rounding: the proxy may catch up with the hand at no more than the stated speed.
+            Some(way) if !jumped => {
+                let sight = if self.friction.is_on(gains) { f64::INFINITY } else { NEARBY.max(AHEAD * way) };
+                (sight, way + gains.proxy_speed.max(0.0) * dt.max(0.0))
             }
-            _ => f64::INFINITY,
+            _ => (f64::INFINITY, f64::INFINITY),
         };
+        self.sight = sight;
         if self.stale > SMALL {
             self.look(solids);
         }
@@ -165,8 +173,14 @@ impl Proxy {
                 break;
             }
             let goal = self.goal(hip, &drag, &metric);
-            let mut step = self.solve(&metric, &goal);
-            step = self.choose(solids, &metric, &goal, step);
+            let mut step = loop {
+                let step = self.solve(&metric, &goal);
+                let step = self.choose(solids, &metric, &goal, step);
+                if self.view.is_listed(step.way(lever)) {
+                    break step;
+                }
+                self.look_farther(solids);
+            };
             if round == 0 && self.friction.is_on(gains) {
                 drag =
                     self.friction.drag(&self.view, &self.projection, &mut self.rows, &metric, &goal, &self.pose, gains);
@@ -239,8 +253,13 @@ impl Proxy {
     }
 
     fn look(&mut self, solids: &Solids) {
-        self.view.look(solids, &self.pose);
+        self.view.look(solids, &self.pose, self.sight);
         self.stale = 0.0;
+    }
+
+    fn look_farther(&mut self, solids: &Solids) {
+        self.sight = f64::INFINITY;
+        self.look(solids);
     }
 
     /// Where the proxy would go if nothing were in its way: to the hand, but for the drag of friction.
@@ -263,7 +282,7 @@ impl Proxy {
         for _ in 0..self.view.pairs.len() {
             let of_pair = self.view.pairs[k].first..self.view.pairs[k].end;
             let holds = tries < TRIES && self.projection.active().any(|(row, _)| of_pair.contains(&row));
-            let Some(plane) = holds.then(|| self.view.tied_plane(solids, k, &placed)).flatten() else {
+            let Some(plane) = holds.then(|| self.view.tied_plane(solids, k, &self.pose, &placed)).flatten() else {
                 k += 1;
                 continue;
             };
@@ -285,7 +304,12 @@ impl Proxy {
             if self.view.penetration <= PENETRATION {
                 return;
             }
-            let step = self.solve(metric, &Step { dp: DVec3::ZERO, dtheta: DVec3::ZERO });
+            let stay = Step { dp: DVec3::ZERO, dtheta: DVec3::ZERO };
+            let mut step = self.solve(metric, &stay);
+            if !self.view.is_listed(step.way(self.view.lever)) {
+                self.look_farther(solids);
+                step = self.solve(metric, &stay);
+            }
             let turn = step.dtheta.length();
             // Turning far under a linear model only stirs: what the turn cannot do, the next round's translation does.
             let step = if turn > TURN { step.scaled(TURN / turn) } else { step };

@@ -1,7 +1,7 @@
 //! What the proxy sees around it: the contacts of all pairs in reach, and how deep it penetrates.
 
 use crate::formation::{ContactFormation, ContactPoint, FormationKind};
-use crate::pair::Covered;
+use crate::pair::{Covered, TURN};
 use crate::placed::Placed;
 use crate::proxy::Step;
 use crate::region::{Clipper, RegionPoint, Scope, most_parallel};
@@ -21,6 +21,8 @@ const OPEN: f64 = 1e-6;
 const BESIDE: f64 = 1e-6;
 /// C-faces of a pair whose signed distances at the proxy are within this of nought meet there, metres.
 const TIE: f64 = 1e-9;
+/// A motion within which no C-face ties is known no farther than this, metres.
+const UNTIED: f64 = 1e-3;
 /// Bounds of the reach, metres.
 const SHORTEST: f64 = 2e-4;
 const LONGEST: f64 = 3e-3;
@@ -40,6 +42,24 @@ pub(crate) struct InReach {
     felt: bool,
 }
 
+/// A plane that no other ties with while the proxy stays near a pose: within `room` (metres) and `turn` (radians).
+#[derive(Clone, Copy, Debug)]
+struct Untied {
+    contact: BasicContact,
+    at: Pose,
+    room: f64,
+    turn: f64,
+}
+
+impl Untied {
+    fn holds(&self, contact: BasicContact, pose: &Pose, lever: f64) -> bool {
+        self.contact == contact && {
+            let turn = 2.1 * (pose.rotation - self.at.rotation).length();
+            turn <= self.turn && (pose.translation - self.at.translation).length() + lever * turn < self.room
+        }
+    }
+}
+
 /// Contacts seen from the proxy.
 #[derive(Debug)]
 pub(crate) struct View {
@@ -48,16 +68,22 @@ pub(crate) struct View {
     pub pairs: Vec<InReach>,
     /// The deepest penetration at the proxy, metres; `<= 0` when free.
     pub penetration: f64,
-    /// Contacts are listed up to this gap, and no step of the proxy is longer (metres).
+    /// No contact with a larger gap is ever listed, and no step of the proxy is longer (metres).
     pub reach: f64,
+    /// Contacts with larger gaps were not listed at the last look, metres.
+    listed: f64,
     /// A motion of the hand in one tick beyond this is a jump, metres.
     pub jump: f64,
     /// Farthest point of A from its origin, metres.
     pub lever: f64,
     clipper: Clipper,
+    /// For each pair whether contacts took place in this tick and in the one before.
     touching: Vec<bool>,
+    touched: Vec<bool>,
     /// For each pair the plane last felt where Near is a seam.
     hints: Vec<Option<BasicContact>>,
+    /// For each pair what is known of planes that tie.
+    untied: Vec<Option<Untied>>,
     /// Pairs whose nearest plane at this look is a seam.
     unfelt: Vec<bool>,
     places: Vec<DVec3>,
@@ -84,11 +110,14 @@ impl View {
             pairs: Vec::with_capacity(pairs),
             penetration: 0.0,
             reach,
+            listed: reach,
             jump: JUMP.max(0.5 * lever),
             lever,
             clipper: Clipper::for_world(world),
             touching: vec![false; pairs],
+            touched: vec![false; pairs],
             hints: vec![None; pairs],
+            untied: vec![None; pairs],
             unfelt: Vec::with_capacity(pairs),
             places: Vec::with_capacity(Self::ROOM),
             pieces: world.fixed.len(),
@@ -99,11 +128,19 @@ impl View {
         self.sense.reset();
         self.touching.fill(false);
         self.hints.fill(None);
+        self.untied.fill(None);
     }
 
-    /// Looks around from `pose`.
-    pub fn look(&mut self, solids: &Solids, pose: &Pose) {
-        self.sense.step(pose);
+    /// Whether every contact that a step of this length (metres) may lead to is listed.
+    pub fn is_listed(&self, way: f64) -> bool {
+        // The points where contacts lie are a little farther from the part's origin than the part's own.
+        1.1 * way <= self.listed || self.listed >= self.reach
+    }
+
+    /// Looks around from `pose` for contacts with gaps of up to `within`, metres.
+    pub fn look(&mut self, solids: &Solids, pose: &Pose, within: f64) {
+        self.listed = within.min(self.reach);
+        self.sense.step_within(pose, self.listed);
         let placed = Placed::new(pose);
         self.points.clear();
         self.pairs.clear();
@@ -118,9 +155,6 @@ impl View {
         self.unfelt.resize(self.sense.pairs.len(), false);
         for k in 0..self.sense.pairs.len() {
             let s = self.sense.pairs[k];
-            if s.near.distance > self.reach {
-                continue;
-            }
             if solids.of(&s, &placed).is_felt(&s.near, Covered::Unfelt) {
                 felt_penetration = felt_penetration.max(-s.near.distance);
                 self.list(solids, s.part, s.piece, &s.near, true, &placed);
@@ -159,16 +193,24 @@ impl View {
 
     fn list(&mut self, solids: &Solids, part: u32, piece: u32, plane: &CFace, felt: bool, placed: &Placed) {
         let first = self.points.len();
-        let scope = Scope { reach: self.reach, near_felt: felt, wide: false, along_near: false };
+        let scope = Scope { reach: self.listed, near_felt: felt, wide: false, along_near: false };
         self.clipper.region(&solids.pair(part, piece, placed), plane, &scope, &mut self.points);
         self.pairs.push(InReach { part, piece, first, end: self.points.len(), plane: *plane, felt });
     }
 
-    /// The plane of another C-face that meets the `k`-th pair's at the proxy.
-    pub fn tied_plane(&self, solids: &Solids, k: usize, placed: &Placed) -> Option<CFace> {
+    /// The plane of another C-face that meets the `k`-th pair's at the proxy, which is at `pose`.
+    pub fn tied_plane(&mut self, solids: &Solids, k: usize, pose: &Pose, placed: &Placed) -> Option<CFace> {
         let pair = &self.pairs[k];
+        let untied = &mut self.untied[pair.part as usize * self.pieces + pair.piece as usize];
         let touches = (-PENETRATION..=TIE).contains(&pair.plane.distance);
-        touches.then(|| solids.pair(pair.part, pair.piece, placed).tied_plane(&pair.plane, TIE)).flatten()
+        if !touches || untied.is_some_and(|u| u.holds(pair.plane.contact, pose, self.lever)) {
+            return None;
+        }
+        let (contact, bodies) = (pair.plane.contact, solids.pair(pair.part, pair.piece, placed));
+        let (tied, room) = bodies.tied_plane(&pair.plane, TIE, UNTIED);
+        let turn = TURN / (1.0 + bodies.leverage(contact));
+        *untied = (room > 0.0).then_some(Untied { contact, at: *pose, room, turn });
+        tied
     }
 
     /// Lists the contacts of the `k`-th pair for this plane instead, last of all; returns the pair as it was.
@@ -225,13 +267,15 @@ impl View {
     pub fn formation(&mut self) -> (ContactFormation, u32) {
         let mut formation = ContactFormation::FREE;
         let mut dropped = 0;
+        std::mem::swap(&mut self.touching, &mut self.touched);
+        self.touching.fill(false);
         for pair in &self.pairs {
-            let known = &mut self.touching[pair.part as usize * self.pieces + pair.piece as usize];
-            let limit = if *known { LEAVING } else { TOUCHING };
+            let index = pair.part as usize * self.pieces + pair.piece as usize;
+            let limit = if self.touched[index] { LEAVING } else { TOUCHING };
             let points = &self.points[pair.first..pair.end];
             self.places.clear();
             self.places.extend(points.iter().filter(|p| p.gap <= limit).map(|p| p.point_w));
-            *known = !self.places.is_empty();
+            self.touching[index] = !self.places.is_empty();
             let Some(deepest) = points.iter().min_by(|p, q| p.gap.total_cmp(&q.gap)).filter(|p| p.gap <= limit) else {
                 continue;
             };

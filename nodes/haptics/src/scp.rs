@@ -4,7 +4,7 @@ mod hold;
 mod refine;
 
 use crate::facing::facing_point;
-use crate::pair::Covered;
+use crate::pair::{Covered, SAME};
 use crate::placed::Placed;
 use crate::projection::{Projection, Row};
 use crate::renderer::SCP_MARGIN;
@@ -123,10 +123,13 @@ impl Scp {
     }
 
     /// The penetration of the hand's pose, metres, `>= 0`: the largest over the planes that count.
-    pub fn depth(&mut self, solids: &Solids, pairs: &[Sensed], placed: &Placed) -> f64 {
+    pub fn depth(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
         self.last = None;
-        self.held = None;
-        self.project(solids, pairs, placed, true)
+        self.hold_depth(solids, pairs, hip, placed).unwrap_or_else(|| {
+            let depth = self.project(solids, pairs, placed, true);
+            self.begin_to_hold_depth(solids, pairs, hip, placed, depth);
+            depth
+        })
     }
 
     /// Finds the SCP and the planes that hold it, in `touches`; returns the depth as [`Scp::depth`] does.
@@ -172,7 +175,7 @@ impl Scp {
             // The SCP is no nearer than any plane's foot.
             let reach = if contradicted { FAR * depth } else { least.1.sqrt() };
             let (mut best, mut tried) = (t.plane, false);
-            pair.offer_planes_beside(&t.plane, -reach, |face| {
+            pair.offer_planes_beside(&t.plane, -reach, SAME, |face| {
                 if pair.is_felt(&face, Covered::Unfelt) {
                     tried = true;
                     rows[i] = row(&face);

@@ -41,10 +41,15 @@ impl Sense {
     }
 
     pub fn step(&mut self, pose: &Pose) {
+        self.step_within(pose, f64::INFINITY);
+    }
+
+    /// Reports pairs up to `margin` metres apart, if that is less.
+    pub fn step_within(&mut self, pose: &Pose, margin: f64) {
         self.pairs.clear();
         self.reseeded = false;
         self.divergent = false;
-        for active in self.tracker.step(pose) {
+        for active in self.tracker.step_within(pose, margin) {
             let t = &active.tracked;
             self.pairs.push(Sensed { part: active.part, piece: active.piece, near: t.near });
             self.reseeded |= t.reseeded;

@@ -1,12 +1,12 @@
 //! From tick to tick the same planes hold the SCP nearly always: then there is nothing to search.
 
-use super::{FAR, Scp, Touch, row, tie_of};
-use crate::pair::Covered;
+use super::{FAR, FREED, Scp, Touch, row, tie_of};
+use crate::pair::{Covered, SAME};
 use crate::placed::Placed;
 use crate::renderer::SCP_MARGIN;
 use crate::sense::Sensed;
 use crate::solid::Solids;
-use spatial::Pose;
+use spatial::{DVec3, Pose};
 
 /// Part of the depth that the hand may move before the planes are searched anew.
 const ROOM: f64 = 0.05;
@@ -19,11 +19,23 @@ pub(super) struct Held {
     room2: f64,
     /// Pairs that penetrated there.
     inside: usize,
+    wanted: Wanted,
+}
+
+/// What the planes are held for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wanted {
+    Scp,
+    /// The depth alone; of the planes the first `felt` are the pairs' nearest, the others lie behind seams.
+    Depth {
+        felt: usize,
+    },
 }
 
 impl Held {
-    fn new(pairs: &[Sensed], hip: &Pose, depth: f64) -> Self {
-        Self { at: *hip, room2: (ROOM * depth).powi(2), inside: inside(pairs) }
+    /// `room` in metres.
+    fn new(pairs: &[Sensed], hip: &Pose, room: f64, wanted: Wanted) -> Self {
+        Self { at: *hip, room2: room * room, inside: inside(pairs), wanted }
     }
 
     fn reaches(&self, hip: &Pose, lever: f64) -> bool {
@@ -33,32 +45,56 @@ impl Held {
 }
 
 impl Scp {
-    /// Lets the planes found be held while the hand stays within [`ROOM`], unless another one may be taken meanwhile.
+    /// Lets the planes found be held while the hand stays within [`ROOM`], or nearer where another one may be taken farther off.
     pub(super) fn begin_to_hold(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed, depth: f64) {
-        let room = ROOM * depth;
+        let room = self.room(solids, pairs, placed, depth);
         let together = self.touches.iter().filter(|t| t.push > 0.0).count() > 1;
         let farthest = -self.shift.length() - 2.0 * room;
-        let is_rivalled = |t: &Touch| {
-            let pair = solids.pair(t.part, t.piece, placed);
-            let Some(s) = pairs.iter().find(|s| (s.part, s.piece) == (t.part, t.piece)) else { return true };
-            // A face of the pair may become nearer than its plane: either may change by the way that is moved.
-            let by_face =
-                s.near.contact != t.plane.contact && pair.is_rivalled(&s.near, &t.plane, t.plane.distance - 2.0 * room);
-            // Or let the SCP come nearer.
-            let mut by_choice = false;
-            if together && t.push > 0.0 && !by_face {
-                pair.offer_planes_beside(&t.plane, farthest, |face| {
-                    by_choice = by_choice || pair.is_felt(&face, Covered::Unfelt);
+        // Another plane may let the SCP come nearer.
+        let has_choice = |t: &Touch| {
+            let mut found = false;
+            if together && t.push > 0.0 {
+                let pair = solids.pair(t.part, t.piece, placed);
+                pair.offer_planes_beside(&t.plane, farthest, SAME, |face| {
+                    found = found || pair.is_felt(&face, Covered::Unfelt);
                 });
             }
-            by_face || by_choice
+            found
         };
-        self.held = (!self.touches.iter().any(is_rivalled)).then(|| Held::new(pairs, hip, depth));
+        let holds = room > 0.0 && !self.touches.iter().any(has_choice);
+        self.held = holds.then(|| Held::new(pairs, hip, room, Wanted::Scp));
+    }
+
+    /// The same for the planes that tell the depth.
+    pub(super) fn begin_to_hold_depth(
+        &mut self,
+        solids: &Solids,
+        pairs: &[Sensed],
+        hip: &Pose,
+        placed: &Placed,
+        depth: f64,
+    ) {
+        let room = self.room(solids, pairs, placed, depth);
+        let is_nearest = |t: &&Touch| pairs.iter().any(|s| is_of(t, s) && s.near.contact == t.plane.contact);
+        let wanted = Wanted::Depth { felt: self.touches.iter().take_while(is_nearest).count() };
+        self.held = (room > 0.0).then(|| Held::new(pairs, hip, room, wanted));
+    }
+
+    /// How far the hand may move before the face of a plane behind a seam may no longer be its pair's nearest, metres, at most
+    /// [`ROOM`]: it and another may come nearer by that way each.
+    fn room(&self, solids: &Solids, pairs: &[Sensed], placed: &Placed, depth: f64) -> f64 {
+        let most = ROOM * depth;
+        let of_touch = |t: &Touch| match pairs.iter().find(|s| is_of(t, s)) {
+            Some(s) if s.near.contact == t.plane.contact => most,
+            Some(s) => 0.5 * solids.of(s, placed).lead_over_faces(&s.near, &t.plane, 2.0 * most),
+            None => 0.0,
+        };
+        self.touches.iter().map(of_touch).fold(most, f64::min)
     }
 
     /// Lets the planes between which the part is wedged be held while the hand stays within [`ROOM`].
     pub(super) fn hold_wedged(&mut self, pairs: &[Sensed], hip: &Pose, depth: f64) {
-        self.held = Some(Held::new(pairs, hip, depth));
+        self.held = Some(Held::new(pairs, hip, ROOM * depth, Wanted::Scp));
     }
 
     /// The depth and, in `touches`, the planes that hold the SCP if those of the last tick still do: each takes place where the
@@ -67,7 +103,7 @@ impl Scp {
     /// Near the SCP these planes bound what is free, so that the projection on them is the nearest touching configuration
     /// around. That no edge contact elsewhere has become nearer is taken for granted within [`ROOM`].
     pub(super) fn hold(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> Option<f64> {
-        let held = self.held.take().filter(|h| h.reaches(hip, self.lever))?;
+        let held = self.held.take().filter(|h| h.wanted == Wanted::Scp && h.reaches(hip, self.lever))?;
         if self.wedged {
             self.take_nearest();
         }
@@ -92,7 +128,7 @@ impl Scp {
         }
         let is_apart = |s: &Sensed| {
             let left = s.near.distance + s.near.normal_w.dot(shift);
-            left > 4.0 * tie_of(solids, s.part) || self.touches.iter().any(|t| (t.part, t.piece) == (s.part, s.piece))
+            left > 4.0 * tie_of(solids, s.part) || self.touches.iter().any(|t| is_of(t, s))
         };
         if !pairs.iter().all(is_apart) || !self.takes_place(solids, &placed.shifted(shift)) {
             return None;
@@ -101,11 +137,48 @@ impl Scp {
         Some(depth)
     }
 
+    /// The depth if the planes that told it at the last tick still do: each pair with a plane that is felt has that plane, or the one
+    /// behind its seam, and all others are free where these lead.
+    pub(super) fn hold_depth(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> Option<f64> {
+        let held = self.held.take().filter(|h| h.reaches(hip, self.lever))?;
+        let Wanted::Depth { felt } = held.wanted else { return None };
+        self.rows.clear();
+        for (i, t) in self.touches.iter_mut().enumerate() {
+            let s = pairs.iter().find(|s| is_of(t, s))?;
+            let pair = solids.of(s, placed);
+            if pair.is_felt(&s.near, Covered::Unfelt) {
+                t.plane = s.near;
+            } else if i < felt {
+                return None;
+            } else {
+                t.plane = pair.applicable_plane(t.plane.contact)?;
+            }
+            self.rows.push(row(&t.plane));
+        }
+        let contradicted = self.projection.contradictions > 0;
+        self.projection.solve_again(&self.rows);
+        if contradicted || self.projection.contradictions > 0 {
+            return None;
+        }
+        let shift = DVec3::from_array(self.projection.z);
+        let there = placed.shifted(shift);
+        let is_known = |s: &Sensed| {
+            s.near.distance + s.near.normal_w.dot(shift) >= -FREED
+                || self.touches.iter().any(|t| is_of(t, s))
+                || solids.of(s, &there).a_face_parts(FREED)
+        };
+        if !pairs.iter().all(is_known) {
+            return None;
+        }
+        self.held = Some(held);
+        Some(self.depth_of_touches())
+    }
+
     /// The same planes at this pose; none if one of them is no longer the felt one.
     fn take_along(&mut self, solids: &Solids, pairs: &[Sensed], placed: &Placed) -> Option<()> {
         self.rows.clear();
         for t in &mut self.touches {
-            let s = pairs.iter().find(|s| (s.part, s.piece) == (t.part, t.piece))?;
+            let s = pairs.iter().find(|s| is_of(t, s))?;
             let pair = solids.of(s, placed);
             // A nearest plane that is felt is the one to hold.
             let is_near = s.near.contact == t.plane.contact;
@@ -119,6 +192,11 @@ impl Scp {
         }
         Some(())
     }
+}
+
+/// Whether the plane is the pair's.
+fn is_of(t: &Touch, s: &Sensed) -> bool {
+    (s.part, s.piece) == (t.part, t.piece)
 }
 
 /// How many pairs penetrate.
