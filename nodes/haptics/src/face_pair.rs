@@ -27,7 +27,7 @@ pub(crate) struct FacePair<'a> {
     pub pair: Pair<'a>,
     face_a: FaceId,
     face_b: FaceId,
-    scope: Scope,
+    pub scope: Scope,
     /// Unit, axes of W.
     sight: DVec3,
     /// Of A's face, inward.

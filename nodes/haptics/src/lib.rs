@@ -11,6 +11,7 @@ mod facing;
 mod formation;
 mod friction;
 mod gains;
+mod hollow;
 mod law;
 mod limiter;
 mod pair;

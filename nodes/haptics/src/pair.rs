@@ -349,7 +349,7 @@ fn three_of(ring: &[VertexId]) -> [VertexId; 3] {
     [ring[0], ring[ring.len() / 2], ring[ring.len() - 1]]
 }
 
-fn edges_of_a<'a>(a: &'a Polyhedron, c: &BasicContact) -> &'a [EdgeId] {
+pub(crate) fn edges_of_a<'a>(a: &'a Polyhedron, c: &BasicContact) -> &'a [EdgeId] {
     match *c {
         BasicContact::TypeA { face_a, .. } => a.face_edges(face_a),
         BasicContact::TypeB { vertex_a, .. } => a.vertex_edges(vertex_a),
@@ -357,7 +357,7 @@ fn edges_of_a<'a>(a: &'a Polyhedron, c: &BasicContact) -> &'a [EdgeId] {
     }
 }
 
-fn edges_of_b<'b>(b: &'b Polyhedron, c: &BasicContact) -> &'b [EdgeId] {
+pub(crate) fn edges_of_b<'b>(b: &'b Polyhedron, c: &BasicContact) -> &'b [EdgeId] {
     match *c {
         BasicContact::TypeA { vertex_b, .. } => b.vertex_edges(vertex_b),
         BasicContact::TypeB { face_b, .. } => b.face_edges(face_b),

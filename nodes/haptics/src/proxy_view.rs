@@ -1,6 +1,7 @@
 //! What the proxy sees around it: the contacts of all pairs in reach, and how deep it penetrates.
 
 use crate::formation::{ContactFormation, ContactPoint, FormationKind};
+use crate::hollow::each_hollow_end;
 use crate::pair::{Covered, TURN};
 use crate::placed::Placed;
 use crate::proxy::Step;
@@ -84,6 +85,8 @@ pub(crate) struct View {
     hints: Vec<Option<BasicContact>>,
     /// For each pair what is known of planes that tie.
     untied: Vec<Option<Untied>>,
+    /// For each pair the last nearest plane that was felt.
+    last_felt: Vec<Option<BasicContact>>,
     /// Pairs whose nearest plane at this look is a seam.
     unfelt: Vec<bool>,
     places: Vec<DVec3>,
@@ -118,6 +121,7 @@ impl View {
             touched: vec![false; pairs],
             hints: vec![None; pairs],
             untied: vec![None; pairs],
+            last_felt: vec![None; pairs],
             unfelt: Vec::with_capacity(pairs),
             places: Vec::with_capacity(Self::ROOM),
             pieces: world.fixed.len(),
@@ -129,6 +133,7 @@ impl View {
         self.touching.fill(false);
         self.hints.fill(None);
         self.untied.fill(None);
+        self.last_felt.fill(None);
     }
 
     /// Whether every contact that a step of this length (metres) may lead to is listed.
@@ -157,10 +162,12 @@ impl View {
             let s = self.sense.pairs[k];
             if solids.of(&s, &placed).is_felt(&s.near, Covered::Unfelt) {
                 felt_penetration = felt_penetration.max(-s.near.distance);
+                self.last_felt[s.part as usize * self.pieces + s.piece as usize] = Some(s.near.contact);
                 self.list(solids, s.part, s.piece, &s.near, true, &placed);
             } else if s.near.distance > -PENETRATION && self.leans_on_open_face(solids, &s, &placed) {
                 // Only the place is a seam's: the faces there, and so the region, are the solid's own.
                 self.list(solids, s.part, s.piece, &s.near, false, &placed);
+                self.list_hollow_ends(solids, &s, &placed);
             } else {
                 self.unfelt[k] = true;
                 unfelt = true;
@@ -176,12 +183,36 @@ impl View {
             }
             let pair = solids.of(&s, &placed);
             let hint = &mut self.hints[pair.part * self.pieces + pair.piece];
-            let Some(plane) = pair.felt_plane(&s.near, Covered::Unfelt, hint) else { continue };
+            let plane = pair.felt_plane(&s.near, Covered::Unfelt, hint);
+            let is_beside = plane.is_some_and(|p| p.distance >= -BESIDE);
+            if !is_beside && self.list_hollow_ends(solids, &s, &placed) {
+                continue;
+            }
             // A plane far inside belongs to the other side of the solid: the pieces around push out first.
-            if plane.distance >= -BESIDE || felt_penetration <= PENETRATION && s.near.distance < -PENETRATION {
+            if let Some(plane) = plane
+                && (is_beside || felt_penetration <= PENETRATION && s.near.distance < -PENETRATION)
+            {
                 self.list(solids, s.part, s.piece, &plane, true, &placed);
             }
         }
+    }
+
+    /// See [`each_hollow_end`]. Whether there is any.
+    fn list_hollow_ends(&mut self, solids: &Solids, s: &Sensed, placed: &Placed) -> bool {
+        let first = self.points.len();
+        let points = &mut self.points;
+        let pair = solids.of(s, placed);
+        let last = self.last_felt[pair.part * self.pieces + pair.piece];
+        each_hollow_end(&pair, &s.near, last, (-BESIDE, self.reach), |plane, at| {
+            if points.len() < points.capacity() {
+                points.push(RegionPoint::of(&plane, at));
+            }
+        });
+        let end = self.points.len();
+        if end > first {
+            self.pairs.push(InReach { part: s.part, piece: s.piece, first, end, plane: s.near, felt: false });
+        }
+        end > first
     }
 
     /// Whether a face of the solid at Near's features stands across Near's normal.
@@ -234,7 +265,7 @@ impl View {
 
     /// Moves the contacts along with a small step to `pose`, to first order: those that so small steps can close.
     pub fn shift(&mut self, solids: &Solids, step: &Step, pose: &Pose) {
-        let mut deepest = f64::INFINITY;
+        let (mut before, mut deepest) = (f64::INFINITY, f64::INFINITY);
         let mut pairs = self.pairs.iter();
         let mut pair = pairs.next();
         let r = pose.rotation_matrix();
@@ -246,6 +277,7 @@ impl View {
                 continue;
             }
             let motion = step.dp + step.dtheta.cross(p.point_w - pose.translation);
+            before = before.min(p.gap);
             p.gap += p.normal_w.dot(motion);
             match p.contact {
                 BasicContact::TypeA { .. } => p.normal_w += step.dtheta.cross(p.normal_w),
@@ -258,7 +290,8 @@ impl View {
             }
             deepest = deepest.min(p.gap);
         }
-        if self.penetration > 0.0 {
+        // A penetration that no contact in view accounts for is not got rid of.
+        if self.penetration > 0.0 && self.penetration <= PENETRATION - before {
             self.penetration = -deepest;
         }
     }

@@ -118,6 +118,8 @@ pub(crate) struct Clipper {
 
 /// Contacts closer together than this part of the size are one.
 const SAME_POINT: f64 = 1e-8;
+/// Normals that differ by less, radians, bound one motion.
+const ONE_DIRECTION: f64 = 1e-4;
 /// Most pairs of faces clipped for one contact, and the cosine up to which they count as facing each other.
 const MAX_PAIRS: usize = 8;
 const FACING: f64 = -0.5;
@@ -145,7 +147,7 @@ impl Clipper {
         // Near's own contact first, at its exact place, when its features face each other.
         let own = if scope.near_felt { facing_point(pair, near, 1e3 * same) } else { None };
         if let Some(point_w) = own.filter(|_| near.distance <= scope.reach) {
-            push(RegionPoint::of(near, point_w), same, [first; 2], out);
+            push(RegionPoint::of(near, point_w), (same, !scope.along_near), [first; 2], out);
         }
         self.pairs.clear();
         if scope.wide {
@@ -197,7 +199,7 @@ impl Clipper {
         let ring = out.len();
         let mut add = |corner: Corner, point: DVec3| {
             if let Some(found) = faces.contact(corner, point).filter(|p| known != Some(p.contact)) {
-                push(found, same, [first, ring], out);
+                push(found, (same, !faces.scope.along_near), [first, ring], out);
             }
         };
         self.edges_of_a(faces, same, &mut add);
@@ -254,10 +256,14 @@ impl Clipper {
     }
 }
 
-/// Keeps a contact unless it is a duplicate of one from `first` on or there is no room; of two at one place the first stays.
+/// Keeps a contact unless it is a duplicate of one from `first` on or there is no room; of two at one place the first stays, but
+/// where `apart` says that they bound the motion in different directions.
 /// From `ring` on they come in the order of a convex polygon's corners: there only neighbours can be at one place.
-fn push(p: RegionPoint, same: f64, [first, ring]: [usize; 2], out: &mut Vec<RegionPoint>) {
-    let there = |o: &RegionPoint| o.point_w.distance_squared(p.point_w) <= same * same;
+fn push(p: RegionPoint, (same, apart): (f64, bool), [first, ring]: [usize; 2], out: &mut Vec<RegionPoint>) {
+    let there = |o: &RegionPoint| {
+        o.point_w.distance_squared(p.point_w) <= same * same
+            && !(apart && o.normal_w.distance_squared(p.normal_w) > ONE_DIRECTION * ONE_DIRECTION)
+    };
     let known = || {
         out[first..ring].iter().any(there)
             || out[ring..].first().is_some_and(there)

@@ -1,0 +1,105 @@
+//! The proxy where a rim of pieces is hollow, and where contacts of different normals meet in a point: it stays where the coupling
+//! is relaxed, so that no energy comes from nowhere.
+
+mod support;
+
+use cspace::{Polyhedron, World};
+use haptics::{Gains, LawKind, RenderLaw, Renderer};
+use spatial::{DQuat, DVec3, Pose};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use support::{mm, penetration, world};
+
+/// An upright prism of `n` sides about the z axis, radius and z from and to in mm.
+fn prism(n: usize, radius: f64, z: [f64; 2]) -> Polyhedron {
+    let ring = |z: f64| {
+        (0..n).map(move |k| {
+            let turn = TAU * k as f64 / n as f64;
+            mm(radius * turn.cos(), radius * turn.sin(), z)
+        })
+    };
+    let vertices: Vec<DVec3> = ring(z[0]).chain(ring(z[1])).collect();
+    let n = n as u32;
+    let sides = (0..n).map(|k| vec![k, (k + 1) % n, n + (k + 1) % n, n + k]);
+    let faces = [(0..n).rev().collect(), (n..2 * n).collect()].into_iter().chain(sides).collect::<Vec<_>>();
+    Polyhedron::from_faces(&vertices, &faces).expect("a prism is a polyhedron")
+}
+
+/// A plate with a hole of `n` sides and the given radius, mm, in `n` pieces; its top at z = 0.
+fn hole(n: usize, radius: f64) -> Vec<Polyhedron> {
+    let corner = |k: usize, radius: f64, z: f64| {
+        let turn = TAU * k as f64 / n as f64;
+        mm(radius * turn.cos(), radius * turn.sin(), z)
+    };
+    let piece = |k: usize| {
+        let ring = |z| [corner(k, radius, z), corner(k, 30.0, z), corner(k + 1, 30.0, z), corner(k + 1, radius, z)];
+        let vertices: Vec<DVec3> = ring(-20.0).into_iter().chain(ring(0.0)).collect();
+        let faces = [[3, 2, 1, 0], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+        Polyhedron::from_faces(&vertices, &faces.map(Vec::from)).expect("a block is a polyhedron")
+    };
+    (0..n).map(piece).collect()
+}
+
+/// The most energy that came from nowhere in one tick, J, of the most that the coupling held; from the second tick on.
+fn created(w: &Arc<World>, path: &dyn Fn(f64) -> Pose, n: u32) -> (f64, f64) {
+    let gains = Gains { law: LawKind::Proxy, proxy_speed: f64::INFINITY, ..Gains::default() };
+    let mut r = Renderer::new(w.clone());
+    let first = path(0.0);
+    for i in 0..=1000 {
+        let above = DVec3::Z * 10e-3 * (1.0 - f64::from(i) / 1e3);
+        r.render(&Pose::new(first.translation + above, first.rotation), &gains, 1e-3);
+    }
+    let (mut worst, mut most) = (0.0_f64, 0.0_f64);
+    let mut last = None;
+    for i in 0..=n {
+        let p = path(f64::from(i) / f64::from(n));
+        let out = r.render(&p, &gains, 1e-3);
+        if i % 50 == 0 {
+            let depth = penetration(w, &out.proxy);
+            assert!(depth <= 1e-7, "tick {i}: the proxy is {depth} m deep");
+        }
+        if let Some((q, wrench, energy)) = last.replace((p, out.wrench, out.energy)) {
+            let (q, mean): (Pose, _) = (q, (wrench + out.wrench) * 0.5);
+            let done = mean.force.dot(p.translation - q.translation) + mean.torque.dot(q.rotation_to(&p));
+            worst = worst.max(out.energy - energy + done);
+        }
+        most = most.max(out.energy);
+    }
+    (worst, most)
+}
+
+#[test]
+fn a_peg_led_around_the_rim_of_a_round_hole_feels_no_joint() {
+    let w = world(prism(12, 6.0, [-12.0, 12.0]), hole(24, 8.0));
+    for tilt in [0.2, 0.45, 0.7] {
+        let path = |s: f64| {
+            let (c, d) = ((0.6 * s).cos(), (0.6 * s).sin());
+            let turn = DQuat::from_scaled_axis(DVec3::new(-d, c, 0.0) * tilt) * DQuat::from_rotation_z(0.3 * s);
+            Pose::new(mm(3.5 * c, 3.5 * d, 6.0 - 8.0 * tilt), turn)
+        };
+        let (worst, most) = created(&w, &path, 1500);
+        assert!(most > 1e-4, "{tilt} rad: in contact ({most} J)");
+        assert!(worst < 1e-7, "{tilt} rad: {worst} J from nowhere, of {most} J");
+    }
+}
+
+#[test]
+fn a_prism_that_slides_along_another_over_its_edges_feels_them_all_at_once() {
+    // Lying across: at a corner of the one an edge of the other crosses two of its edges in one point.
+    let lying = DQuat::from_rotation_x(TAU / 4.0);
+    let fixed = prism(64, 100.0, [-400.0, 400.0]);
+    let turned: Vec<DVec3> = fixed.vertices().iter().map(|v| lying * *v - DVec3::Z * 0.1).collect();
+    let faces: Vec<Vec<u32>> =
+        fixed.faces().map(|f| fixed.face_vertices(f).iter().map(|v| v.index() as u32).collect()).collect();
+    let w = world(
+        prism(64, 60.0, [-80.0, 80.0]),
+        vec![Polyhedron::from_faces(&turned, &faces).expect("a prism is a polyhedron")],
+    );
+    let path = |s: f64| {
+        let turn = DQuat::from_scaled_axis(DVec3::new(0.05 * s, 0.03, 0.02 * s));
+        Pose::new(mm(-6.0 + 12.0 * s, 1.0 - 3.0 * s, 76.0 + 0.5 * s), turn)
+    };
+    let (worst, most) = created(&w, &path, 1500);
+    assert!(most > 1e-4, "in contact ({most} J)");
+    assert!(worst < 1e-7, "{worst} J from nowhere, of {most} J");
+}
