@@ -9,22 +9,12 @@ use crate::scp::{Scp, TIED, Touch};
 use crate::sense::Sensed;
 use crate::shares::Shares;
 use crate::solid::Solids;
-use crate::{ContactFormation, ContactPoint, FormationKind, Gains, LawKind};
+use crate::{ContactFormation, ContactPoint, FormationKind, Gains, LawKind, LawOutput};
 use cspace::{BasicContact, contact_point_turned};
 use spatial::{DVec3, Pose, Wrench};
 
 /// Planes are one constraint when their normals differ by less than this (radians) and their offsets by this part of the part's size.
 const EQUAL: f64 = 4e-6;
-
-/// What a depth law made of a pose.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct DepthResult {
-    pub wrench: Wrench,
-    pub scp: DVec3,
-    pub depth: f64,
-    pub formation: ContactFormation,
-    pub dropped: u32,
-}
 
 /// Scratch of the depth laws, and whether contact was multiple at the last tick.
 #[derive(Debug)]
@@ -67,34 +57,36 @@ impl DepthLaw {
     }
 
     /// The wrench at the hand's pose from the pairs sensed there.
-    pub fn render(
-        &mut self,
-        solids: &Solids,
-        pairs: &[Sensed],
-        hip: &Pose,
-        law: LawKind,
-        gains: &Gains,
-    ) -> DepthResult {
+    pub fn render(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, law: LawKind, gains: &Gains) -> LawOutput {
         let placed = Placed::new(hip);
         let x0 = hip.translation;
         self.points.clear();
         let depth = self.scp.find(solids, pairs, hip, &placed);
-        let mut result =
-            DepthResult { wrench: Wrench::ZERO, scp: x0, depth, formation: ContactFormation::FREE, dropped: 0 };
-        if depth <= 0.0 {
-            self.multiple = false;
-            return result;
-        }
-        let shift = self.scp.shift();
-        result.scp = x0 + shift; // one plane alone: (1)
-        result.wrench.force = shift * gains.stiffness; // (2)
-        self.contacts(solids, &placed, law, gains, &mut result);
-        for i in 0..self.scp.touches.len() {
-            let t = self.scp.touches[i];
-            if t.push > 0.0 {
-                self.widen(solids, pairs, &placed, law, gains, &t);
-                result.wrench.torque += self.torque_of(i, t, x0, law, gains);
+        let mut result = LawOutput {
+            wrench: Wrench::ZERO,
+            proxy: *hip,
+            depth,
+            energy: 0.0,
+            formation: ContactFormation::FREE,
+            dropped: 0,
+            reseeded: false,
+            divergent: false,
+        };
+        if depth > 0.0 {
+            let shift = self.scp.shift();
+            result.proxy.translation = x0 + shift; // one plane alone: (1)
+            result.wrench.force = shift * gains.stiffness; // (2)
+            result.energy = 0.5 * gains.stiffness * shift.length_squared();
+            self.contacts(solids, &placed, law, gains, &mut result);
+            for i in 0..self.scp.touches.len() {
+                let t = self.scp.touches[i];
+                if t.push > 0.0 {
+                    self.widen(solids, pairs, &placed, law, gains, &t);
+                    result.wrench.torque += self.torque_of(i, t, x0, law, gains);
+                }
             }
+        } else {
+            self.multiple = false;
         }
         result
     }
@@ -105,7 +97,7 @@ impl DepthLaw {
     }
 
     /// Clips the contact regions of the penetrating pairs and states the formation.
-    fn contacts(&mut self, solids: &Solids, placed: &Placed, law: LawKind, gains: &Gains, result: &mut DepthResult) {
+    fn contacts(&mut self, solids: &Solids, placed: &Placed, law: LawKind, gains: &Gains, result: &mut LawOutput) {
         // One state for all pairs: the pieces of one obstacle must switch together.
         let was_multiple = std::mem::take(&mut self.multiple);
         for t in &mut self.scp.touches {

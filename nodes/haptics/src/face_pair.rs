@@ -77,10 +77,9 @@ impl<'a> FacePair<'a> {
     }
 
     /// The point of A's face over the `j`-th vertex of B's face, if that lies under A's face and not within `same` metres of its
-    /// border.
-    pub fn over_vertex_of_b(&self, j: usize, same: f64) -> Option<DVec3> {
+    /// border. `on_a` is any point of A's face.
+    pub fn over_vertex_of_b(&self, j: usize, on_a: DVec3, same: f64) -> Option<DVec3> {
         let at = self.pair.b.vertex(self.pair.b.face_vertices(self.face_b)[j]);
-        let on_a = self.pair.placed.point(self.pair.a.vertex(self.ring_a()[0]));
         let span = self.normal_a.dot(on_a - at) / self.normal_a.dot(self.sight);
         if span * self.slope > self.highest {
             return None;

@@ -65,8 +65,9 @@ pub struct Passivity {
     account: f64,
     remote: f64,
     stored: f64,
-    /// Shown by the contact and by the remote side, newest first.
+    /// Shown by the contact and by the remote side: a ring, newest first from `newest` on.
     shown: [(Wrench, Wrench); ON_THE_WAY],
+    newest: usize,
 }
 
 impl Passivity {
@@ -87,7 +88,7 @@ impl Passivity {
     fn felt(&self, ticks: f64) -> (Wrench, Wrench) {
         let ticks = ticks.clamp(0.0, (ON_THE_WAY - 2) as f64);
         let (whole, part) = (ticks as usize, ticks.fract());
-        let (new, old) = (self.shown[whole], self.shown[whole + 1]);
+        let (new, old) = (self.shown_before(whole), self.shown_before(whole + 1));
         let mean = |new: Wrench, old: Wrench| new * (1.0 - part) + old * part;
         (mean(new.0, old.0), mean(new.1, old.1))
     }
@@ -144,9 +145,9 @@ impl Passivity {
         // What is on its way to the hand is spent first.
         let ticks = (limits.delay / dt).clamp(0.0, (ON_THE_WAY - 2) as f64);
         let whole = ticks as usize;
-        let mut coming = work(&self.shown[whole].0, moving) * ticks.fract();
-        for (local, _) in &self.shown[..whole] {
-            coming += work(local, moving);
+        let mut coming = work(&self.shown_before(whole).0, moving) * ticks.fract();
+        for ago in 0..whole {
+            coming += work(&self.shown_before(ago).0, moving);
         }
         let have = (self.stored + self.account - coming.max(0.0)).max(0.0);
         // The wrench speeds the hand up meanwhile; not so while it only turns round.
@@ -162,8 +163,13 @@ impl Passivity {
 
     /// Takes note of what is shown during the coming tick: the contact's part and the remote side's.
     pub fn shown(&mut self, local: Wrench, remote: Wrench) {
-        self.shown.rotate_right(1);
-        self.shown[0] = (local, remote);
+        self.newest = (self.newest + ON_THE_WAY - 1) % ON_THE_WAY;
+        self.shown[self.newest] = (local, remote);
+    }
+
+    /// What was shown `ago` ticks before the newest.
+    fn shown_before(&self, ago: usize) -> (Wrench, Wrench) {
+        self.shown[(self.newest + ago) % ON_THE_WAY]
     }
 
     /// Whether the controller cannot keep up: the hand has got more than it has put in, by the whole budget.

@@ -54,10 +54,11 @@ struct Untied {
 
 impl Untied {
     fn holds(&self, contact: BasicContact, pose: &Pose, lever: f64) -> bool {
-        self.contact == contact && {
-            let turn = 2.1 * (pose.rotation - self.at.rotation).length();
-            turn <= self.turn && (pose.translation - self.at.translation).length() + lever * turn < self.room
-        }
+        // |q - q0| = 2 sin(angle / 4).
+        let turn = 2.1 * (pose.rotation - self.at.rotation).length();
+        self.contact == contact
+            && turn <= self.turn
+            && (pose.translation - self.at.translation).length() + lever * turn < self.room
     }
 }
 
@@ -308,7 +309,7 @@ impl View {
             let points = &self.points[pair.first..pair.end];
             self.places.clear();
             self.places.extend(points.iter().filter(|p| p.gap <= limit).map(|p| p.point_w));
-            self.touching[index] = !self.places.is_empty();
+            self.touching[index] |= !self.places.is_empty();
             let Some(deepest) = points.iter().min_by(|p, q| p.gap.total_cmp(&q.gap)).filter(|p| p.gap <= limit) else {
                 continue;
             };

@@ -107,7 +107,7 @@ pub(crate) struct Scope {
 /// Scratch for clipping; grows at construction only.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Clipper {
-    /// The vertices of A's face, W.
+    /// The vertices of A's face, W, and the first again.
     ring: Vec<DVec3>,
     /// Which sides of B's face have something of A's face beyond them.
     cuts: Vec<bool>,
@@ -131,7 +131,7 @@ impl Clipper {
         let room = world.moving.iter().map(|p| most(p)).max().unwrap_or(0);
         let sides = world.fixed.iter().map(|p| most(&p.polyhedron)).max().unwrap_or(0);
         Self {
-            ring: Vec::with_capacity(room),
+            ring: Vec::with_capacity(room + 1),
             cuts: Vec::with_capacity(sides),
             spans: Vec::with_capacity(room),
             pairs: Vec::with_capacity(MAX_PAIRS),
@@ -208,7 +208,7 @@ impl Clipper {
         for (j, cuts) in self.cuts.iter().enumerate() {
             if std::mem::replace(&mut last, *cuts)
                 && *cuts
-                && let Some(point) = faces.over_vertex_of_b(j, same)
+                && let Some(point) = faces.over_vertex_of_b(j, self.ring[0], same)
             {
                 add(Corner::OfB(j), point);
             }
@@ -221,36 +221,39 @@ impl Clipper {
         let Self { ring, cuts, spans, .. } = self;
         ring.clear();
         ring.extend(faces.ring_a().iter().map(|v| faces.pair.placed.point(faces.pair.a.vertex(*v))));
+        let Some(first) = ring.first().copied() else { return };
         spans.clear();
         spans.resize(ring.len(), Span::WHOLE);
         cuts.clear();
-        let Some(last) = ring.len().checked_sub(1) else { return };
+        ring.push(first);
         for (j, (outward, offset)) in faces.sides_of_b().enumerate() {
+            let beyond = |p: DVec3| outward.dot(p) - offset;
             let mut is_cutting = false;
-            let mut before = outward.dot(ring[last]) - offset;
-            let mut edge = last;
-            for (i, p) in ring.iter().enumerate() {
-                let beyond = outward.dot(*p) - offset;
-                is_cutting |= beyond > same;
-                spans[edge].cut(j as u32, before, beyond, same);
-                (before, edge) = (beyond, i);
+            let mut start = beyond(first);
+            for (span, q) in spans.iter_mut().zip(&ring[1..]) {
+                let end = beyond(*q);
+                if start > same || end > same {
+                    span.cut(j as u32, start, end, same);
+                    is_cutting = true;
+                }
+                start = end;
             }
             cuts.push(is_cutting);
         }
-        let mut end_height = faces.height(ring[0]);
-        for (i, span) in spans.iter().enumerate() {
-            let (p, q) = (ring[i], ring[if i < last { i + 1 } else { 0 }]);
-            let height = std::mem::replace(&mut end_height, faces.height(q));
-            if span.is_empty() || height.min(end_height) > faces.highest {
+        let mut start = (first, faces.height(first));
+        for (i, (span, q)) in spans.iter().zip(&ring[1..]).enumerate() {
+            let end = (*q, faces.height(*q));
+            let (p, height) = std::mem::replace(&mut start, end);
+            if span.is_empty() || height.min(end.1) > faces.highest {
                 continue;
             }
             if span.enter.side == Cut::NONE {
                 add(Corner::OfA(i), p);
             } else {
-                add(Corner::Crossing(i, span.enter.side as usize), p + (q - p) * span.enter.line);
+                add(Corner::Crossing(i, span.enter.side as usize), p + (*q - p) * span.enter.line);
             }
             if span.leave.side != Cut::NONE {
-                add(Corner::Crossing(i, span.leave.side as usize), p + (q - p) * span.leave.line);
+                add(Corner::Crossing(i, span.leave.side as usize), p + (*q - p) * span.leave.line);
             }
         }
     }

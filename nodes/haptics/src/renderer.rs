@@ -92,21 +92,12 @@ impl RenderLaw for Renderer {
                 formation,
                 dropped,
                 reseeded: seeded && !first && !changed,
-                divergent: self.sense.divergent,
+                divergent: false,
             }
         } else {
-            let r = self.depth_law.render(&self.solids, &self.sense.pairs, hip, gains.law, gains);
-            LawOutput {
-                wrench: r.wrench,
-                proxy: Pose::new(r.scp, hip.rotation),
-                depth: r.depth,
-                energy: 0.5 * gains.stiffness * (r.scp - hip.translation).length_squared(),
-                formation: r.formation,
-                dropped: r.dropped,
-                reseeded: false,
-                divergent: self.sense.divergent,
-            }
+            self.depth_law.render(&self.solids, &self.sense.pairs, hip, gains.law, gains)
         };
+        out.divergent = self.sense.divergent;
         out.reseeded |= self.sense.reseeded && !first;
         if changed {
             self.step = self.last - out.wrench;

@@ -4,7 +4,7 @@ use crate::motion::Motion;
 use crate::output::{Output, Rendered};
 use crate::sample_check::SampleCheck;
 use crate::{Config, Health, TickInput, TickRecord};
-use haptics::{Gains, LawOutput, RenderLaw, Renderer};
+use haptics::{LawOutput, RenderLaw, Renderer};
 use scene::Scene;
 use spatial::{Pose, Twist, Wrench};
 
@@ -82,7 +82,8 @@ impl Tick {
             health.set(Health::RESEEDED);
         }
         let twist = self.twist();
-        let law = self.render(&hip, &gains, dt, &mut health);
+        let mut law = self.law.render(&hip, &gains, dt);
+        self.check(&mut law, &hip, &mut health);
 
         let rendered = Rendered {
             law: &law,
@@ -137,13 +138,13 @@ impl Tick {
         Twist { linear: hand.linear * self.mapping.scale(), ..hand }
     }
 
-    fn render(&mut self, hip: &Pose, gains: &Gains, dt: f64, health: &mut Health) -> LawOutput {
-        let mut law = self.law.render(hip, gains, dt);
+    /// What the law says of itself, and nothing of it where it is no number.
+    fn check(&mut self, law: &mut LawOutput, hip: &Pose, health: &mut Health) {
         let finite = law.wrench.is_finite() && law.proxy.is_valid() && law.depth >= 0.0 && law.energy.is_finite();
         if !finite {
             health.set(Health::FAULT);
             self.law.reset();
-            law = LawOutput { wrench: Wrench::ZERO, proxy: *hip, depth: 0.0, energy: 0.0, ..law };
+            (law.wrench, law.proxy, law.depth, law.energy) = (Wrench::ZERO, *hip, 0.0, 0.0);
         }
         for (set, bit) in
             [(law.reseeded, Health::RESEEDED), (law.divergent, Health::DIVERGENT), (law.dropped > 0, Health::OVERFLOW)]
@@ -152,7 +153,6 @@ impl Tick {
                 health.set(bit);
             }
         }
-        law
     }
 }
 

@@ -155,20 +155,22 @@ impl Scp {
             }
             self.rows.push(row(&t.plane));
         }
-        let contradicted = self.projection.contradictions > 0;
-        self.projection.solve_again(&self.rows);
-        if contradicted || self.projection.contradictions > 0 {
-            return None;
-        }
-        let shift = DVec3::from_array(self.projection.z);
-        let there = placed.shifted(shift);
-        let is_known = |s: &Sensed| {
-            s.near.distance + s.near.normal_w.dot(shift) >= -FREED
-                || self.touches.iter().any(|t| is_of(t, s))
-                || solids.of(s, &there).a_face_parts(FREED)
-        };
-        if !pairs.iter().all(is_known) {
-            return None;
+        let is_other = |s: &&Sensed| s.near.distance < 0.0 && !self.touches.iter().any(|t| is_of(t, s));
+        let mut others = pairs.iter().filter(is_other).peekable();
+        if others.peek().is_some() {
+            let contradicted = self.projection.contradictions > 0;
+            self.projection.solve_again(&self.rows);
+            if contradicted || self.projection.contradictions > 0 {
+                return None;
+            }
+            let shift = DVec3::from_array(self.projection.z);
+            let there = placed.shifted(shift);
+            let is_freed = |s: &Sensed| {
+                s.near.distance + s.near.normal_w.dot(shift) >= -FREED || solids.of(s, &there).a_face_parts(FREED)
+            };
+            if !others.all(is_freed) {
+                return None;
+            }
         }
         self.held = Some(held);
         Some(self.depth_of_touches())
