@@ -92,6 +92,12 @@ class ProcessesThatEnd(Hands):
 
         return nanoseconds(wait_until(look, what).header.stamp)
 
+    def test_0_the_middleware_shares_no_memory_that_a_killed_process_could_leave_locked(self):
+        self.start_device()
+        threads = Path(f"/proc/{self.running['haptic_device'].process.pid}/task").glob("*/comm")
+        names = [thread.read_text().strip() for thread in threads]
+        self.assertEqual([name for name in names if name.startswith("dds.shm")], [], "see config/fastdds_loopback.xml")
+
     def test_1_a_servo_that_ends_leaves_no_force(self):
         self.start_device()
         for how in SIGNALS:

@@ -2,7 +2,7 @@
 
 mod support;
 
-use inspect::{Options, Recorder, Sink, record_overview};
+use inspect::{Feed, Options, Recorder, Sink, record_overview};
 use rerun::StoreKind;
 use rerun::log::Chunk;
 use rerun::log::LogMsg;
@@ -132,6 +132,18 @@ fn ten_minutes_stay_below_150_megabytes() {
     let bytes = write(&folder.path().join("run.rrd"), 30_000);
     println!("30 s of motion: {bytes} bytes, so {:.1} MB in 10 minutes", bytes as f64 * 20.0 * 1e-6);
     assert!(bytes * 20 < 150_000_000, "30 s took {bytes} bytes");
+}
+
+#[test]
+fn the_history_of_a_servo_fits_when_it_comes_at_once() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let subject = support::peg_on_plate();
+    let ticks = support::run(&subject, 10_000);
+    let sink = Sink::File(folder.path().join("run.rrd"));
+    let mut feed = Feed::start(subject, &sink, &Options::default()).expect("a folder of our own");
+    assert!(ticks.iter().all(|tick| feed.tick(tick)), "ten seconds of ticks");
+    assert_eq!(feed.dropped(), 0);
+    feed.finish(PATIENCE).expect("the disk is quick");
 }
 
 #[test]

@@ -142,10 +142,13 @@ impl DeviceNode {
         self.host.say_ready();
         let outcome = self.turns();
         self.device.write(&Wrench::ZERO);
-        let header = Header { stamp: self.host.now().into(), frame_id: self.frame_id.clone() };
-        // The force is gone whether or not anybody can be told.
-        let told = self.shown.say(&WrenchStamped { header, wrench: Wrench::ZERO.into() });
-        self.host.linger(Duration::from_millis(100));
+        // The force is gone whether or not anybody can be told; a lost message is sent no second time.
+        let told = (0..5).try_for_each(|_| {
+            let header = Header { stamp: self.host.now().into(), frame_id: self.frame_id.clone() };
+            let told = self.shown.say(&WrenchStamped { header, wrench: Wrench::ZERO.into() });
+            self.host.linger(Duration::from_millis(20));
+            told
+        });
         outcome.and(told)
     }
 

@@ -105,9 +105,12 @@ impl FollowerNode {
             last = now;
             self.step(now, dt)?;
         }
-        let header = self.header(self.host.now());
-        self.wrench.say(&WrenchStamped { header, wrench: Wrench::ZERO.into() })?;
-        self.host.spin_once(Duration::from_millis(50));
+        // A lost message is sent no second time.
+        for _ in 0..5 {
+            let header = self.header(self.host.now());
+            self.wrench.say(&WrenchStamped { header, wrench: Wrench::ZERO.into() })?;
+            self.host.linger(Duration::from_millis(20));
+        }
         Ok(())
     }
 

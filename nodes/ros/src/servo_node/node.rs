@@ -252,7 +252,7 @@ impl ServoNode {
 
     /// After the loop was told to stop: its last ticks, the last word on the wrench, and what it all came to.
     fn finish(mut self) -> Outcome<()> {
-        let link = self.link.take();
+        let mut link = self.link.take();
         let Servo { handle, mut records, .. } = self.servo;
         let joined = handle.join();
         while let Some(tick) = records.pop() {
@@ -266,12 +266,15 @@ impl ServoNode {
         if let Some(end) = self.events.finish(&self.last) {
             self.contacts.say(&end)?;
         }
-        let now = self.host.now();
-        self.topics.say_no_force(now)?;
-        if let Some(mut link) = link {
-            link.turn(now)?;
+        // Again and again: these topics send a lost message no second time.
+        for _ in 0..10 {
+            let now = self.host.now();
+            self.topics.say_no_force(now)?;
+            if let Some(link) = &mut link {
+                link.turn(now)?;
+            }
+            self.host.linger(Duration::from_millis(20));
         }
-        self.host.linger(Duration::from_millis(200));
         let status = joined.map_err(|e| Failure::new(e.to_string()))?;
         self.host.say(&format!(
             "ticks={} late={} lost={} wakeup: {}",

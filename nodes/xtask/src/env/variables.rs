@@ -6,6 +6,9 @@ use std::fmt::Display;
 use std::path::Path;
 use std::process::Command;
 
+/// What names a profile of Fast DDS: the name until version 2, and the one since.
+const PROFILES: [&str; 2] = ["FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE"];
+
 /// The variables to set on top of the inherited environment.
 #[derive(Debug, Clone, Default)]
 pub struct Variables(BTreeMap<String, String>);
@@ -47,16 +50,20 @@ impl Variables {
         let mut command = self.command(program);
         command
             .env("ROS_DOMAIN_ID", domain.to_string())
-            .env("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
             .env_remove("ROS_LOCALHOST_ONLY")
             .env_remove("ROS_STATIC_PEERS");
-        if std::env::var_os("FASTDDS_BUILTIN_TRANSPORTS").is_none() {
+        let fast_dds = self.get("RMW_IMPLEMENTATION").is_none_or(|name| name.contains("fastrtps"));
+        if fast_dds {
             // A killed process leaves its shared memory locked, and others of Fast DDS wait on it or go deaf: one that dies
-            // must not take the rest along.
-            command.env("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4");
-        }
-        if self.get("ROS_DISTRO").as_deref() == Some("humble") {
+            // must not take the rest along. Asked for this machine alone, ROS adds shared memory whatever the variables of
+            // Fast DDS say; a profile that it leaves as it is gives both.
+            let profile = crate::workspace::root().join("config/fastdds_loopback.xml");
+            command.env("ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT");
+            command.envs(PROFILES.map(|name| (name, profile.clone())));
+        } else if self.get("ROS_DISTRO").as_deref() == Some("humble") {
             command.env("ROS_LOCALHOST_ONLY", "1"); // Humble knows no discovery range; later ones warn of this name.
+        } else {
+            command.env("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST");
         }
         command
     }
@@ -76,6 +83,23 @@ mod tests {
         let mut variables = Variables::default();
         variables.set("A", "it's");
         assert_eq!(variables.to_shell(), "export A='it'\\''s'\n");
+    }
+
+    #[test]
+    fn nodes_of_this_machine_alone_share_no_memory() {
+        let mut variables = Variables::default();
+        let of = |variables: &Variables, name: &str| {
+            let command = variables.local_command("node", 7);
+            let value = command.get_envs().find(|(key, _)| *key == name).and_then(|(_, value)| value);
+            value.map(|v| v.to_string_lossy().into_owned())
+        };
+        variables.set("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp");
+        assert_eq!(of(&variables, "ROS_AUTOMATIC_DISCOVERY_RANGE").as_deref(), Some("SYSTEM_DEFAULT"));
+        assert!(PROFILES.iter().all(|name| Path::new(&of(&variables, name).unwrap()).is_file()));
+        variables.set("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp");
+        variables.set("ROS_DISTRO", "jazzy");
+        assert_eq!(of(&variables, "ROS_AUTOMATIC_DISCOVERY_RANGE").as_deref(), Some("LOCALHOST"));
+        assert_eq!(of(&variables, "FASTRTPS_DEFAULT_PROFILES_FILE"), None);
     }
 
     #[test]
