@@ -6,7 +6,7 @@ import unittest
 from client import Client, Ticks, norm, qos, seconds
 from cspace_haptics_msgs.msg import ContactState, SceneDescription, ServoConfiguration, TickRecord
 from geometry_msgs.msg import PoseStamped, WrenchStamped
-from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.msg import Log, Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
 from rclpy.qos import ReliabilityPolicy
 from std_srvs.srv import SetBool, Trigger
@@ -146,11 +146,14 @@ class ServoNode(unittest.TestCase):
             scenes = late.listen(SceneDescription, f"{NAME}/scene", latched)
             configurations = late.listen(ServoConfiguration, f"{NAME}/configuration", latched)
             states = late.listen(ContactState, f"{NAME}/contacts", latched)
+            lines = late.listen(Log, "/rosout", qos(reliable=True, latched=True))
             late.wait(scenes, what="scenes")
             late.wait(configurations, what="configurations")
             late.wait(states, what="contact states")
             self.assertEqual(scenes[0].name, "peg_in_hole")
             self.assertIn("law", configurations[0].yaml)
+            said = wait_until(lambda: [m for m in list(lines) if m.name == "haptic_servo"], "what the servo has said")
+            self.assertIn("ready", [m.msg for m in said])
 
     def test_9_parameters_are_described_set_and_refused_with_the_reason(self):
         call = self.client.call

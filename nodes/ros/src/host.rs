@@ -1,6 +1,7 @@
 use crate::failure::panic_text;
-use crate::{Failure, Outcome};
-use r2r::{Clock, Context, Node};
+use crate::{Failure, Outcome, qos};
+use r2r::rcl_interfaces::msg::Log;
+use r2r::{Clock, Context, Node, Publisher};
 use spatial::Stamp;
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,6 +18,8 @@ pub struct Host {
     name: String,
     clock: Arc<Mutex<Clock>>,
     stop: Arc<AtomicBool>,
+    /// Where `rqt_console` looks; none where the ROS at hand has no such topic.
+    rosout: Option<Publisher<Log>>,
 }
 
 impl Host {
@@ -61,14 +64,15 @@ impl Host {
                 Failure::usage(format!("ROS: {}; see the README for examples", without_origin(&panic_text(p.as_ref()))))
             })?
             .map_err(|e| Failure::new(format!("ROS does not start: {e}; is the environment sourced and HOME set?")))?;
-        let node = Node::create(context, name, "").map_err(|e| {
+        let mut node = Node::create(context, name, "").map_err(|e| {
             Failure::new(format!(
                 "node `{name}` cannot be made: {e}; check its name and namespace, ROS_DOMAIN_ID and RMW_IMPLEMENTATION"
             ))
         })?;
         let name = node.fully_qualified_name()?;
         let clock = node.get_ros_clock();
-        Ok(Self { node, name, clock, stop })
+        let rosout = node.create_publisher("/rosout", qos::latched(1000)).ok();
+        Ok(Self { node, name, clock, stop, rosout })
     }
 
     fn wants_sim_time(&self) -> bool {
@@ -117,17 +121,33 @@ impl Host {
     pub fn say_ready(&self) {
         println!("ready: {}", self.name);
         let _ = std::io::stdout().flush();
+        self.log(Log::INFO as u8, "ready");
     }
 
-    /// Says one line of progress on stdout.
+    /// Says one line of progress on stdout, and on `/rosout`.
     pub fn say(&self, line: &str) {
         println!("{}: {line}", self.name);
         let _ = std::io::stdout().flush();
+        self.log(Log::INFO as u8, line);
     }
 
-    /// Says one line of warning on stderr.
+    /// Says one line of warning on stderr, and on `/rosout`.
     pub fn warn(&self, line: &str) {
         eprintln!("warning: {}: {line}", self.name);
+        self.log(Log::WARN as u8, line);
+    }
+
+    fn log(&self, level: u8, line: &str) {
+        let Some(rosout) = &self.rosout else { return };
+        // Loggers have dots where nodes have slashes. Nothing depends on whether the line is heard.
+        let name = self.name.trim_start_matches('/').replace('/', ".");
+        let _ = rosout.publish(&Log {
+            stamp: crate::convert::time(self.now()),
+            level,
+            name,
+            msg: line.to_owned(),
+            ..Log::default()
+        });
     }
 }
 

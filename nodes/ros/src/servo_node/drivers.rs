@@ -41,7 +41,7 @@ pub fn open(
     trust_stamps: bool,
 ) -> Outcome<(Box<dyn HapticDevice>, Option<TopicLink>)> {
     if config.device.driver == Driver::Topic {
-        let (device, link) = TopicLink::open(node, TopicConfig { trust_stamps })?;
+        let (device, link) = TopicLink::open(node, TopicConfig { trust_stamps }, config.device.timeout)?;
         return Ok((Box::new(device), Some(link)));
     }
     Ok((open_local(config, scene)?, None))

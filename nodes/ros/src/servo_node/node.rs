@@ -1,7 +1,7 @@
 use super::contact_events::ContactEvents;
 use super::drivers;
 use super::setup::{apply, declared, scene_file};
-use super::{CSpaceView, Due, Frames, ServoTopics, TopicLink};
+use super::{CSpaceView, DeviceLimits, Due, Frames, ServoTopics, TopicLink};
 use crate::convert::{ServoReport, scene_description, sha256};
 use crate::parameters::ParameterServer;
 use crate::{Failure, Host, Inbox, Listener, Outcome, Talker, qos};
@@ -32,6 +32,7 @@ pub struct ServoNode {
     commands: Commands,
     servo: Servo,
     link: Option<TopicLink>,
+    limits: DeviceLimits,
     topics: ServoTopics,
     events: ContactEvents,
     contacts: Talker<ContactState>,
@@ -83,7 +84,10 @@ impl ServoNode {
         let findings = servo::check_stability(&config, &scene)
             .map_err(|f| Failure::new(format!("stability.check refuses to start: {f}")))?;
         findings.iter().for_each(|f| host.say(&format!("warning: {f}")));
-        let commands = Commands { enabled: parameters.switch("enabled"), gains: config.gains, ..Commands::default() };
+        let limits = if link.is_some() { DeviceLimits::unknown() } else { DeviceLimits::of(device.spec()) };
+        limits.finding(&config.gains).iter().for_each(|f| host.warn(f));
+        let gains = limits.hold(config.gains);
+        let commands = Commands { enabled: parameters.switch("enabled"), gains, ..Commands::default() };
         let servo = spawn_loop(device, &scene, &config, commands)?;
         scene_talker.say(&scene_description(&scene, host.now(), &config.frame_id))?;
         parameters.serve(host.now(), &mut |_| Ok(()))?;
@@ -105,6 +109,7 @@ impl ServoNode {
             commands,
             servo,
             link,
+            limits,
             topics,
             contacts,
             configuration,
@@ -142,8 +147,10 @@ impl ServoNode {
             self.host.spin_once(TURN);
             let now = self.host.now();
             self.serve(now)?;
-            if let Some(link) = &mut self.link {
-                link.turn(now)?;
+            if let Some(link) = &mut self.link
+                && let Some(warning) = link.turn(now)?
+            {
+                self.host.warn(&warning);
             }
             self.publish_ticks()?;
             if self.report_due.at(now) {
@@ -171,8 +178,12 @@ impl ServoNode {
         let mut wanted = self.config.clone();
         self.parameters.serve(now, &mut |new| apply(&mut wanted, new))?;
         if wanted != self.config {
+            let most = |c: &Config| (c.gains.max_force, c.gains.max_torque);
+            if most(&wanted) != most(&self.config) {
+                self.limits.finding(&wanted.gains).iter().for_each(|f| self.host.warn(f));
+            }
             self.config = wanted;
-            self.commands.gains = self.config.gains;
+            self.commands.gains = self.limits.hold(self.config.gains);
             self.say_configuration()?;
         }
         self.hear_robot();
@@ -266,6 +277,17 @@ impl ServoNode {
         if let Some(end) = self.events.finish(&self.last) {
             self.contacts.say(&end)?;
         }
+        let ended = joined.map_err(|e| Failure::new(e.to_string()));
+        if let Ok(status) = &ended {
+            self.host.say(&format!(
+                "ticks={} late={} lost={} wakeup: {}",
+                status.ticks,
+                status.late_ticks,
+                status.records_dropped,
+                status.wakeup.summary()
+            ));
+            self.host.say(&format!("tick: {}", status.compute.summary()));
+        }
         // Again and again: these topics send a lost message no second time.
         for _ in 0..10 {
             let now = self.host.now();
@@ -275,16 +297,7 @@ impl ServoNode {
             }
             self.host.linger(Duration::from_millis(20));
         }
-        let status = joined.map_err(|e| Failure::new(e.to_string()))?;
-        self.host.say(&format!(
-            "ticks={} late={} lost={} wakeup: {}",
-            status.ticks,
-            status.late_ticks,
-            status.records_dropped,
-            status.wakeup.summary()
-        ));
-        self.host.say(&format!("tick: {}", status.compute.summary()));
-        Ok(())
+        ended.map(drop)
     }
 }
 

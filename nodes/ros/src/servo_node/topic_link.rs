@@ -1,3 +1,4 @@
+use super::StampWatch;
 use crate::{Listener, Outcome, Talker, qos};
 use bag::msg::{Header, Joy, PoseStamped, TwistStamped, WrenchStamped};
 use device::{DeviceSpec, TopicConfig, TopicDevice, TopicPort, topic_device};
@@ -13,15 +14,18 @@ pub struct TopicLink {
     out: Talker<WrenchStamped>,
     frame_id: String,
     heard: bool,
+    /// How old a sample may be, s, where stamps are trusted.
+    trusted: Option<f64>,
+    watch: StampWatch,
 }
 
 impl TopicLink {
     /// Subscribes to `haptic_device/pose`, `haptic_device/twist` and `haptic_device/joy` and offers
-    /// `haptic_device/command/wrench`, to be remapped to the driver's names.
+    /// `haptic_device/command/wrench`, to be remapped to the driver's names. Samples older than `timeout` seconds are stale.
     ///
     /// # Errors
     /// The middleware refuses a topic.
-    pub fn open(node: &mut Node, config: TopicConfig) -> Outcome<(TopicDevice, Self)> {
+    pub fn open(node: &mut Node, config: TopicConfig, timeout: f64) -> Outcome<(TopicDevice, Self)> {
         let (device, port) = topic_device(DeviceSpec::force_feedback("topic"), config);
         let link = Self {
             port,
@@ -31,15 +35,19 @@ impl TopicLink {
             out: Talker::new(node, "haptic_device/command/wrench", qos::sensor())?,
             frame_id: String::new(),
             heard: false,
+            trusted: config.trust_stamps.then_some(timeout),
+            watch: StampWatch::default(),
         };
         Ok((device, link))
     }
 
-    /// Hands over what came since the last turn, and the newest wrench to the driver.
+    /// Hands over what came since the last turn, and the newest wrench to the driver. Says in one line when the poses' stamps
+    /// cannot be trusted as they should.
     ///
     /// # Errors
     /// The middleware refuses the wrench.
-    pub fn turn(&mut self, now: Stamp) -> Outcome<()> {
+    pub fn turn(&mut self, now: Stamp) -> Outcome<Option<String>> {
+        let mut warning = None;
         if let Some(joy) = self.joys.take_newest() {
             self.port.buttons(buttons(&joy.buttons));
         }
@@ -47,7 +55,9 @@ impl TopicLink {
             self.port.twist(message.twist.into());
         }
         while let Some(message) = self.poses.take() {
-            self.port.pose(message.pose.into(), message.header.stamp.into());
+            let stamp: Stamp = message.header.stamp.into();
+            warning = self.trusted.and_then(|timeout| self.watch.see(stamp, now, timeout)).or(warning);
+            self.port.pose(message.pose.into(), stamp);
             self.frame_id = message.header.frame_id;
             self.heard = true;
         }
@@ -56,7 +66,7 @@ impl TopicLink {
             let header = Header { stamp: now.into(), frame_id: self.frame_id.clone() };
             self.out.say(&WrenchStamped { header, wrench: self.port.wrench().into() })?;
         }
-        Ok(())
+        Ok(warning)
     }
 }
 
