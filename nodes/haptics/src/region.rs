@@ -154,6 +154,9 @@ impl Clipper {
             facing_pairs(pair, near, &mut self.pairs);
         } else {
             self.pairs.extend(most_parallel(pair, near));
+            if !scope.along_near {
+                pairs_along_edges(pair, near, scope.reach, &mut self.pairs);
+            }
         }
         let known = own.map(|_| near.contact);
         for k in 0..self.pairs.len() {
@@ -302,6 +305,27 @@ fn facing_pairs(pair: &Pair<'_>, near: &CFace, out: &mut Vec<(FaceId, FaceId)>) 
             out.push(faces);
         }
     });
+}
+
+/// Adds to the pair of faces that was chosen at two crossing edges those of the other faces there that the other body's edge lies
+/// along, within `reach` metres: it crosses their far sides, too, and all these places bound the motion.
+fn pairs_along_edges(pair: &Pair<'_>, near: &CFace, reach: f64, out: &mut Vec<(FaceId, FaceId)>) {
+    let Pair { solids, a, b, part, piece, placed } = *pair;
+    let (BasicContact::TypeC { edge_a, edge_b }, Some(&chosen)) = (near.contact, out.first()) else { return };
+    let along_a = placed.r * a.edge_direction(edge_a);
+    let along_b = placed.r.transpose() * b.edge_direction(edge_b);
+    for face_a in a.edge(edge_a).faces {
+        let slope = a.face_plane(face_a).normal.dot(along_b).abs();
+        if face_a != chosen.0 && slope * a.size() <= reach && !solids.is_internal_a(part, face_a) {
+            out.push((face_a, chosen.1));
+        }
+    }
+    for face_b in b.edge(edge_b).faces {
+        let slope = b.face_plane(face_b).normal.dot(along_a).abs();
+        if face_b != chosen.1 && slope * b.size() <= reach && !solids.is_internal_b(piece, face_b) {
+            out.push((chosen.0, face_b));
+        }
+    }
 }
 
 /// Calls `each` with the pairs of surface faces at the features of `near`, and the cosine between their outward normals.

@@ -1,14 +1,15 @@
-//! The proxy where a rim of pieces is hollow, and where contacts of different normals meet in a point: it stays where the coupling
-//! is relaxed, so that no energy comes from nowhere.
+//! The proxy where a rim of pieces is hollow, where contacts of different normals meet in a point, and where a face lies along an
+//! edge: it stays where the coupling is relaxed, so that no energy comes from nowhere.
 
 mod support;
 
 use cspace::{Polyhedron, World};
 use haptics::{Gains, LawKind, RenderLaw, Renderer};
+use rand::RngExt;
 use spatial::{DQuat, DVec3, Pose};
 use std::f64::consts::TAU;
 use std::sync::Arc;
-use support::{mm, penetration, world};
+use support::{mm, penetration, random, world};
 
 /// An upright prism of `n` sides about the z axis, radius and z from and to in mm.
 fn prism(n: usize, radius: f64, z: [f64; 2]) -> Polyhedron {
@@ -38,6 +39,12 @@ fn hole(n: usize, radius: f64) -> Vec<Polyhedron> {
         Polyhedron::from_faces(&vertices, &faces.map(Vec::from)).expect("a block is a polyhedron")
     };
     (0..n).map(piece).collect()
+}
+
+/// A prism of 64 sides that lies along the y axis, an edge or a side on top at z = 0.
+fn lying_cylinder() -> Polyhedron {
+    let lying = Pose::new(DVec3::NEG_Z * 0.1, DQuat::from_rotation_x(TAU / 4.0));
+    random::placed(&prism(64, 100.0, [-400.0, 400.0]), &lying)
 }
 
 /// The most energy that came from nowhere in one tick, J, of the most that the coupling held; from the second tick on.
@@ -86,15 +93,7 @@ fn a_peg_led_around_the_rim_of_a_round_hole_feels_no_joint() {
 #[test]
 fn a_prism_that_slides_along_another_over_its_edges_feels_them_all_at_once() {
     // Lying across: at a corner of the one an edge of the other crosses two of its edges in one point.
-    let lying = DQuat::from_rotation_x(TAU / 4.0);
-    let fixed = prism(64, 100.0, [-400.0, 400.0]);
-    let turned: Vec<DVec3> = fixed.vertices().iter().map(|v| lying * *v - DVec3::Z * 0.1).collect();
-    let faces: Vec<Vec<u32>> =
-        fixed.faces().map(|f| fixed.face_vertices(f).iter().map(|v| v.index() as u32).collect()).collect();
-    let w = world(
-        prism(64, 60.0, [-80.0, 80.0]),
-        vec![Polyhedron::from_faces(&turned, &faces).expect("a prism is a polyhedron")],
-    );
+    let w = world(prism(64, 60.0, [-80.0, 80.0]), vec![lying_cylinder()]);
     let path = |s: f64| {
         let turn = DQuat::from_scaled_axis(DVec3::new(0.05 * s, 0.03, 0.02 * s));
         Pose::new(mm(-6.0 + 12.0 * s, 1.0 - 3.0 * s, 76.0 + 0.5 * s), turn)
@@ -102,4 +101,19 @@ fn a_prism_that_slides_along_another_over_its_edges_feels_them_all_at_once() {
     let (worst, most) = created(&w, &path, 1500);
     assert!(most > 1e-4, "in contact ({most} J)");
     assert!(worst < 1e-7, "{worst} J from nowhere, of {most} J");
+}
+
+#[test]
+fn a_round_part_whose_small_faces_lie_along_an_edge_keeps_both_their_ends_in_view() {
+    for seed in [20, 22, 59] {
+        let mut rng = random::rng(seed);
+        let mut u = |most: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(-most..most)));
+        let points: Vec<DVec3> = (0..120).map(|_| u(1.0).normalize() * 0.1).collect();
+        let w = world(random::hull(&points), vec![lying_cylinder()]);
+        let (turn, roll) = (DQuat::from_scaled_axis(u(2.0)), u(0.2));
+        let path = |s: f64| Pose::new(mm(-4.0 + 8.0 * s, 8.0 * s, 97.0), DQuat::from_scaled_axis(roll * s) * turn);
+        let (worst, most) = created(&w, &path, 1500);
+        assert!(most > 1e-3, "{seed}: in contact ({most} J)");
+        assert!(worst < 1e-7, "{seed}: {worst} J from nowhere, of {most} J");
+    }
 }
