@@ -116,7 +116,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("256f:c635, combined reports");
     let mut device = Virtual::plug(0x256f, 0xc635, COMBINED)?;
     until(&mut mouse, "plugged in", nothing, |s| s.connected)?;
-    let light = device.outputs.recv_timeout(Duration::from_secs(5))?;
+    let light = device.outputs.recv_timeout(Duration::from_secs(20))?;
     println!("  light report {light:02x?}");
     if light != [4, 1] {
         return Err("the light was not switched on".into());
