@@ -204,7 +204,7 @@ impl View {
         let points = &mut self.points;
         let pair = solids.of(s, placed);
         let last = self.last_felt[pair.part * self.pieces + pair.piece];
-        each_hollow_end(&pair, &s.near, last, (-BESIDE, self.reach), |plane, at| {
+        each_hollow_end(&pair, &s.near, last, (-BESIDE, self.listed), |plane, at| {
             if points.len() < points.capacity() {
                 points.push(RegionPoint::of(&plane, at));
             }

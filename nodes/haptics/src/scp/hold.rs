@@ -3,9 +3,11 @@
 use super::{FAR, FREED, Scp, Touch, row, tie_of};
 use crate::pair::{Covered, SAME};
 use crate::placed::Placed;
+use crate::projection::Projection;
 use crate::renderer::SCP_MARGIN;
 use crate::sense::Sensed;
 use crate::solid::Solids;
+use cspace::CFace;
 use spatial::{DVec3, Pose};
 
 /// Part of the depth that the hand may move before the planes are searched anew.
@@ -151,6 +153,11 @@ impl Scp {
             } else if i < felt {
                 return None;
             } else {
+                // The planes before it must still not free the pair by its seam.
+                self.projection.solve_again(&self.rows);
+                if is_freed(&s.near, &self.projection) {
+                    return None;
+                }
                 t.plane = pair.applicable_plane(t.plane.contact)?;
             }
             self.rows.push(row(&t.plane));
@@ -163,12 +170,8 @@ impl Scp {
             if contradicted || self.projection.contradictions > 0 {
                 return None;
             }
-            let shift = DVec3::from_array(self.projection.z);
-            let there = placed.shifted(shift);
-            let is_freed = |s: &Sensed| {
-                s.near.distance + s.near.normal_w.dot(shift) >= -FREED || solids.of(s, &there).a_face_parts(FREED)
-            };
-            if !others.all(is_freed) {
+            let there = placed.shifted(DVec3::from_array(self.projection.z));
+            if !others.all(|s| is_freed(&s.near, &self.projection) || solids.of(s, &there).a_face_parts(FREED)) {
                 return None;
             }
         }
@@ -194,6 +197,11 @@ impl Scp {
         }
         Some(())
     }
+}
+
+/// Whether a pair is free where the projection leads, by its nearest plane.
+fn is_freed(near: &CFace, projection: &Projection<3>) -> bool {
+    near.distance + near.normal_w.dot(DVec3::from_array(projection.z)) >= -FREED
 }
 
 /// Whether the plane is the pair's.
