@@ -14,7 +14,7 @@ SCENE = ROOT / "config/scenes/peg_in_hole/scene.yaml"
 
 
 def run(*command):
-    return subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=120)
+    return subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=600)
 
 
 def script(name, *arguments):

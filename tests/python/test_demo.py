@@ -78,7 +78,7 @@ class Demo(unittest.TestCase):
                 self.assertTrue(demo.lines[-1].startswith("error: "), demo.text)
                 self.gone(family)
                 (folder,) = folders() - before
-                summary = subprocess.run([BIN / "cspace-haptics", "bag", "summary", folder / "bag"], capture_output=True, text=True, timeout=60)
+                summary = subprocess.run([BIN / "cspace-haptics", "bag", "summary", folder / "bag"], capture_output=True, text=True, timeout=600)
                 if victim != "haptic_recorder" or "no topic" not in summary.stderr:
                     self.assertEqual(summary.returncode, 0, summary.stderr)
 

@@ -67,7 +67,7 @@ class Installation(unittest.TestCase):
         for variable in ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH"):
             before[variable] = without_our_messages(variable)
         script = f". {self.install}/local_setup.sh && env -0"
-        said = subprocess.run(["sh", "-c", script], env=before, capture_output=True, check=True, timeout=60).stdout.decode()
+        said = subprocess.run(["sh", "-c", script], env=before, capture_output=True, check=True, timeout=600).stdout.decode()
         return dict(line.split("=", 1) for line in said.split("\0") if line)
 
     def test_1_colcon_finds_the_two_packages_and_no_others(self):
@@ -104,14 +104,14 @@ class Installation(unittest.TestCase):
         environment = self.environment()
         for package in PACKAGES:
             self.assertIn(str(self.install / package), environment["AMENT_PREFIX_PATH"].split(":"))
-        libraries = subprocess.run(["ldd", self.bin / "haptic_servo"], env=environment, capture_output=True, text=True, timeout=60).stdout
+        libraries = subprocess.run(["ldd", self.bin / "haptic_servo"], env=environment, capture_output=True, text=True, timeout=600).stdout
         ours = [line for line in libraries.splitlines() if "libcspace_haptics_msgs" in line]
         self.assertTrue(ours)
         for line in ours:
             self.assertIn(str(self.install / "cspace_haptics_msgs/lib"), line)
         self.assertNotIn("not found", libraries)
         script = "import cspace_haptics_msgs.msg as m; print(m.__file__); print(m.TickBatch())"
-        said = subprocess.run(["python3", "-c", script], env=environment, capture_output=True, text=True, timeout=60)
+        said = subprocess.run(["python3", "-c", script], env=environment, capture_output=True, text=True, timeout=600)
         self.assertEqual(said.returncode, 0, said.stderr)
         self.assertIn(str(self.install), said.stdout)
 

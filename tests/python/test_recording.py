@@ -18,7 +18,7 @@ TOPICS = ",".join(f"/haptic_servo/{name}" for name in ("ticks", "pose", "proxy_p
 def check_bag(bag, *options):
     """The independent readers' verdict."""
     command = [TOOLS / "bin/python", ROOT / "tests/python/check_bag.py", *options, bag]
-    return subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=120, env={"PATH": "/usr/bin:/bin"})
+    return subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=600, env={"PATH": "/usr/bin:/bin"})
 
 
 def rerun(*arguments):
@@ -67,7 +67,7 @@ class Recording(unittest.TestCase):
             recorder.end(signal.SIGKILL)
             lived = steps * 0.01
             self.assertEqual(servo.end(), 0, servo.text)
-            summary = subprocess.run([BIN / "cspace-haptics", "bag", "summary", bag], capture_output=True, text=True, timeout=60)
+            summary = subprocess.run([BIN / "cspace-haptics", "bag", "summary", bag], capture_output=True, text=True, timeout=600)
             if lived < 1.0 and summary.returncode == 1:
                 continue  # all of it may be within the last second
             self.assertEqual(summary.returncode, 0, summary.stderr)
