@@ -30,6 +30,7 @@ mod seams;
 mod sense;
 mod shares;
 mod solid;
+mod steadying;
 #[cfg(test)]
 mod testing;
 

@@ -9,6 +9,7 @@ use crate::placed::Placed;
 use crate::projection::{Projection, Row};
 use crate::proxy_view::{PENETRATION, View};
 use crate::solid::Solids;
+use crate::steadying::Steadying;
 use spatial::{DVec3, Pose, Wrench};
 
 /// Re-linearisations in one tick while steps are not cut short; with cut steps (fast motion), in all.
@@ -38,6 +39,7 @@ pub(crate) struct Proxy {
     rows: Vec<Row<6>>,
     projection: Projection<6>,
     friction: Friction,
+    steadying: Steadying,
     last_hip: Option<Pose>,
     /// How far the proxy looks around in this tick, metres.
     sight: f64,
@@ -75,6 +77,13 @@ impl Metric {
         // A stiffness of zero would leave the proxy undetermined; the wrench is scaled by the true gains anyway.
         let per_root = |stiffness: f64, least: f64| 1.0 / stiffness.max(least).sqrt();
         Self { per_root_f: per_root(gains.stiffness, 1e-6), per_root_r: per_root(gains.rotation_stiffness, 1e-9) }
+    }
+
+    /// The same program with turns held back, and the goal that then leads to the same pose.
+    fn steadied(&self, steadying: &Steadying, goal: &Step) -> (Self, Step) {
+        let factor = steadying.factor();
+        let metric = Self { per_root_r: self.per_root_r * factor.sqrt(), ..*self };
+        (metric, Step { dtheta: goal.dtheta * factor, ..*goal })
     }
 
     pub fn row(&self, normal: DVec3, moment: DVec3, offset: f64, goal: &Step, equality: bool) -> Row<6> {
@@ -116,6 +125,7 @@ impl Proxy {
             rows: Vec::with_capacity(View::ROOM + 16),
             projection: Projection::new(),
             friction,
+            steadying: Steadying::default(),
             last_hip: None,
             sight: f64::INFINITY,
             stale: 0.0,
@@ -127,6 +137,7 @@ impl Proxy {
         self.last_hip = None;
         self.projection = Projection::new();
         self.friction.reset();
+        self.steadying.reset();
         self.view.reset();
     }
 
@@ -152,6 +163,7 @@ impl Proxy {
             self.seed(solids, hip, gains);
         }
         let metric = Metric::new(gains);
+        self.steadying.begin();
         let safe = self.pose;
         let (sight, mut budget) = match moved {
             // Edge rounding: the proxy may catch up with the hand at no more than the stated speed.
@@ -182,8 +194,9 @@ impl Proxy {
                 self.look_farther(solids);
             };
             if round == 0 && self.friction.is_on(gains) {
-                drag =
-                    self.friction.drag(&self.view, &self.projection, &mut self.rows, &metric, &goal, &self.pose, gains);
+                let (metric, goal) = metric.steadied(&self.steadying, &goal);
+                let Self { friction, view, projection, rows, pose, .. } = self;
+                drag = friction.drag(view, projection, rows, &metric, &goal, pose, gains);
                 let goal = self.goal(hip, &drag, &metric);
                 step = self.solve(&metric, &goal);
             }
@@ -191,6 +204,7 @@ impl Proxy {
             let limit = self.view.reach.min(budget).min(way * TURN / step.dtheta.length().max(1e-300));
             let scale = if way > limit { limit / way } else { 1.0 };
             cut += usize::from(way > self.view.reach);
+            self.steadying.learn(&step, scale, &self.projection, &self.view);
             let step = step.scaled(scale);
             budget -= way * scale;
             if scale == 1.0 && self.projection.active().next().is_none() && drag == Wrench::ZERO {
@@ -269,6 +283,7 @@ impl Proxy {
     }
 
     fn solve(&mut self, metric: &Metric, goal: &Step) -> Step {
+        let (metric, goal) = &metric.steadied(&self.steadying, goal);
         contact_rows(&mut self.rows, &self.view, &self.pose, metric, goal);
         self.projection.solve_again(&self.rows);
         metric.step(&self.projection.z, goal)
