@@ -83,7 +83,7 @@ impl ServoNode {
         let (device, link) = drivers::open(node, &config, &scene, trust_stamps)?;
         let findings = servo::check_stability(&config, &scene)
             .map_err(|f| Failure::new(format!("stability.check refuses to start: {f}")))?;
-        findings.iter().for_each(|f| host.say(&format!("warning: {f}")));
+        findings.iter().for_each(|f| host.warn(&f.to_string()));
         let limits = if link.is_some() { DeviceLimits::unknown() } else { DeviceLimits::of(device.spec()) };
         limits.finding(&config.gains).iter().for_each(|f| host.warn(f));
         let gains = limits.hold(config.gains);
