@@ -111,7 +111,8 @@ impl View {
         Self {
             sense: Sense::new(world.clone(), reach),
             points: Vec::with_capacity(Self::ROOM),
-            pairs: Vec::with_capacity(pairs),
+            // A pair may be listed by its region and by its hollow ends.
+            pairs: Vec::with_capacity(2 * pairs),
             penetration: 0.0,
             reach,
             listed: reach,
