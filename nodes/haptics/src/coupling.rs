@@ -79,19 +79,9 @@ pub fn low_pass_share(cutoff: f64, dt: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ContactFormation;
 
     fn output(proxy: Pose, depth: f64) -> LawOutput {
-        LawOutput {
-            wrench: Wrench::ZERO,
-            proxy,
-            depth,
-            energy: 0.0,
-            formation: ContactFormation::FREE,
-            dropped: 0,
-            reseeded: false,
-            divergent: false,
-        }
+        LawOutput { depth, ..LawOutput::free(proxy) }
     }
 
     fn at(p: DVec3) -> Pose {

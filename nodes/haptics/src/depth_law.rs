@@ -4,14 +4,14 @@ use crate::facing::lone_contact;
 use crate::paper_torque::torque;
 use crate::placed::Placed;
 use crate::reduced_hull::nearest_point;
-use crate::region::{Clipper, RegionPoint, Scope};
+use crate::region::{Clipper, RegionPoint, Scope, push_within};
 use crate::scp::{Scp, TIED, Touch};
 use crate::sense::Sensed;
 use crate::shares::Shares;
 use crate::solid::Solids;
-use crate::{ContactFormation, ContactPoint, FormationKind, Gains, LawKind, LawOutput};
+use crate::{ContactPoint, FormationKind, Gains, LawKind, LawOutput};
 use cspace::{BasicContact, contact_point_turned};
-use spatial::{DVec3, Pose, Wrench};
+use spatial::{DVec3, Pose};
 
 /// Planes are one constraint when their normals differ by less than this (radians) and their offsets by this part of the part's size.
 const EQUAL: f64 = 4e-6;
@@ -62,16 +62,7 @@ impl DepthLaw {
         let x0 = hip.translation;
         self.points.clear();
         let depth = self.scp.find(solids, pairs, hip, &placed);
-        let mut result = LawOutput {
-            wrench: Wrench::ZERO,
-            proxy: *hip,
-            depth,
-            energy: 0.0,
-            formation: ContactFormation::FREE,
-            dropped: 0,
-            reseeded: false,
-            divergent: false,
-        };
+        let mut result = LawOutput { depth, ..LawOutput::free(*hip) };
         if depth > 0.0 {
             let shift = self.scp.shift();
             result.proxy.translation = x0 + shift; // one plane alone: (1)
@@ -213,13 +204,6 @@ impl DepthLaw {
         }
         let p = nearest_point(&self.places, &self.weights, &mut self.order, x0);
         force.cross(x0 - p)
-    }
-}
-
-/// Keeps a contact if there is room.
-fn push_within(points: &mut Vec<RegionPoint>, p: RegionPoint) {
-    if points.len() < points.capacity() {
-        points.push(p);
     }
 }
 

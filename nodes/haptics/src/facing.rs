@@ -82,18 +82,22 @@ pub(crate) fn facing_point(pair: &Pair<'_>, c: &CFace, tolerance: f64) -> Option
             let (a0, a1) = (placed.point(a.vertex(a0)), placed.point(a.vertex(a1)));
             let (b0, b1) = (b.vertex(b0), b.vertex(b1));
             let (ua, ub) = (a1 - a0, b1 - b0);
-            // Parameters of the closest points of the two lines.
-            let n = ua.cross(ub);
-            let nn = n.length_squared();
-            if nn <= 1e-24 * ua.length_squared() * ub.length_squared() {
-                return None;
-            }
-            let s = (b0 - a0).cross(ub).dot(n) / nn;
-            let t = (b0 - a0).cross(ua).dot(n) / nn;
+            let (s, t) = closest_places([a0, a1], [b0, b1])?;
             let (ts, tt) = (tolerance / ua.length(), tolerance / ub.length());
             (s >= -ts && s <= 1.0 + ts && t >= -tt && t <= 1.0 + tt).then(|| b0 + ub * t.clamp(0.0, 1.0))
         }
     }
+}
+
+/// Where two lines come closest, each 0 to 1 between its two points; none if they are parallel.
+pub(crate) fn closest_places([a0, a1]: [DVec3; 2], [b0, b1]: [DVec3; 2]) -> Option<(f64, f64)> {
+    let (along_a, along_b) = (a1 - a0, b1 - b0);
+    let n = along_a.cross(along_b);
+    let square = n.length_squared();
+    if square <= 1e-24 * along_a.length_squared() * along_b.length_squared() {
+        return None;
+    }
+    Some(((b0 - a0).cross(along_b).dot(n) / square, (b0 - a0).cross(along_a).dot(n) / square))
 }
 
 /// Whether the foot of `p` on the face's plane lies in the face, or outside by no more than `tolerance` metres.

@@ -1,5 +1,6 @@
 //! Edges that end at a joint where the solid is hollow, as the rim of a polygonal hole does at its corners.
 
+use crate::facing::closest_places;
 use crate::pair::{Pair, edges_of_a, edges_of_b};
 use cspace::{BasicContact, CFace, EdgeId, is_applicable_turned};
 use spatial::DVec3;
@@ -55,7 +56,7 @@ fn hollow_end(pair: &Pair<'_>, (edge_a, edge_b): (EdgeId, EdgeId), normal_w: DVe
     let Pair { solids, part, piece, a, b, placed } = *pair;
     let ends_a = a.edge(edge_a).vertices.map(|v| placed.point(a.vertex(v)));
     let ends_b = b.edge(edge_b).vertices.map(|v| b.vertex(v));
-    let (on_a, on_b) = places(ends_a, ends_b)?;
+    let (on_a, on_b) = closest_places(ends_a, ends_b)?;
     let (past_a, past_b) = (past(on_a, ends_a), past(on_b, ends_b));
     if past_a.max(past_b) > PAST {
         return None;
@@ -76,17 +77,6 @@ fn hollow_end(pair: &Pair<'_>, (edge_a, edge_b): (EdgeId, EdgeId), normal_w: DVe
     let is_hollow = (hollow_a || hollow_b) && goes_on(hollow_a, past_a) && goes_on(hollow_b, past_b);
     let inside = |s: f64| s.clamp(INSIDE, 1.0 - INSIDE);
     (is_hollow && felt_a(inside(s)) && felt_b(inside(t))).then(|| ends_b[0].lerp(ends_b[1], t))
-}
-
-/// Where the two lines come closest, 0 to 1 between the ends; none if they are parallel.
-fn places([a0, a1]: [DVec3; 2], [b0, b1]: [DVec3; 2]) -> Option<(f64, f64)> {
-    let (along_a, along_b) = (a1 - a0, b1 - b0);
-    let n = along_a.cross(along_b);
-    let square = n.length_squared();
-    if square <= 1e-12 * along_a.length_squared() * along_b.length_squared() {
-        return None;
-    }
-    Some(((b0 - a0).cross(along_b).dot(n) / square, (b0 - a0).cross(along_a).dot(n) / square))
 }
 
 /// How far beyond the ends the place `s` lies, metres.

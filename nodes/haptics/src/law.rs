@@ -22,6 +22,23 @@ pub struct LawOutput {
     pub divergent: bool,
 }
 
+impl LawOutput {
+    /// Of a hand at `pose` that touches nothing.
+    #[must_use]
+    pub fn free(pose: Pose) -> Self {
+        Self {
+            wrench: Wrench::ZERO,
+            proxy: pose,
+            depth: 0.0,
+            energy: 0.0,
+            formation: ContactFormation::FREE,
+            dropped: 0,
+            reseeded: false,
+            divergent: false,
+        }
+    }
+}
+
 /// Renders contact: owns trackers and scratch, allocates at construction only.
 pub trait RenderLaw: Send {
     /// One tick: the hand's pose of A in W, the gains and the time since the last tick (s). Bounded; no allocation.

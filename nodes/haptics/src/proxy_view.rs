@@ -5,7 +5,7 @@ use crate::hollow::each_hollow_end;
 use crate::pair::{Covered, TURN};
 use crate::placed::Placed;
 use crate::proxy::Step;
-use crate::region::{Clipper, RegionPoint, Scope, most_parallel};
+use crate::region::{Clipper, RegionPoint, Scope, most_parallel, push_within};
 use crate::sense::{Sense, Sensed};
 use crate::solid::Solids;
 use cspace::{BasicContact, CFace};
@@ -206,9 +206,7 @@ impl View {
         let pair = solids.of(s, placed);
         let last = self.last_felt[pair.part * self.pieces + pair.piece];
         each_hollow_end(&pair, &s.near, last, (-BESIDE, self.listed), |plane, at| {
-            if points.len() < points.capacity() {
-                points.push(RegionPoint::of(&plane, at));
-            }
+            push_within(points, RegionPoint::of(&plane, at));
         });
         let end = self.points.len();
         if end > first {

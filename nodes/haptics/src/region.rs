@@ -275,8 +275,15 @@ fn push(p: RegionPoint, (same, apart): (f64, bool), [first, ring]: [usize; 2], o
             || out[ring..].first().is_some_and(there)
             || out[ring..].last().is_some_and(there)
     };
-    if out.len() < out.capacity() && !known() {
-        out.push(p);
+    if !known() {
+        push_within(out, p);
+    }
+}
+
+/// Keeps a contact if there is room.
+pub(crate) fn push_within(points: &mut Vec<RegionPoint>, p: RegionPoint) {
+    if points.len() < points.capacity() {
+        points.push(p);
     }
 }
 
