@@ -1,10 +1,11 @@
 use crate::failure::Failure;
-use std::fs::{File, OpenOptions};
+use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// A file that appears whole or not at all: written under another name in the same folder, then renamed. What is there
-/// already and is no ordinary file (a terminal, a pipe) is not replaced but written to, once all is known.
+/// already and is no ordinary file (a terminal, a pipe) or is the program's standard output is not replaced but written
+/// to, once all is known.
 pub struct AtomicFile {
     /// As the user calls it.
     path: PathBuf,
@@ -16,6 +17,33 @@ enum Place {
     /// The file's own path, behind all symbolic links.
     File(PathBuf),
     Device(File),
+    StandardOutput,
+}
+
+impl Place {
+    fn of(path: &Path) -> io::Result<Self> {
+        let Ok(there) = path.metadata() else { return Ok(Self::File(path.to_owned())) };
+        if is_standard_output(&there) {
+            return Ok(Self::StandardOutput);
+        }
+        // A pipe or a deleted file behind /proc has no path by which it could be replaced.
+        match path.canonicalize() {
+            Ok(own) if there.is_file() => Ok(Self::File(own)),
+            _ => OpenOptions::new().write(true).open(path).map(Self::Device),
+        }
+    }
+}
+
+/// `/dev/stdout` leads to a file when the shell redirects to one: replacing it would take what `>>` has kept.
+#[cfg(unix)]
+fn is_standard_output(there: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    Path::new("/dev/stdout").metadata().is_ok_and(|out| (out.dev(), out.ino()) == (there.dev(), there.ino()))
+}
+
+#[cfg(not(unix))]
+fn is_standard_output(_: &Metadata) -> bool {
+    false
 }
 
 impl AtomicFile {
@@ -25,17 +53,12 @@ impl AtomicFile {
             return Err(Failure::file(path, "is a folder, not a file to write"));
         }
         crate::outputs::spare(path, inputs)?;
-        let own = path.canonicalize();
-        let place = if own.is_ok() && !path.is_file() {
-            Place::Device(OpenOptions::new().write(true).open(path).map_err(|e| cannot_write(path, &e))?)
-        } else {
-            Place::File(own.unwrap_or_else(|_| path.to_owned()))
-        };
+        let place = Place::of(path).map_err(|e| cannot_write(path, &e))?;
         let folder = match &place {
             Place::File(file) => {
                 file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
             }
-            Place::Device(_) => std::env::temp_dir(),
+            Place::Device(_) | Place::StandardOutput => std::env::temp_dir(),
         };
         let file = tempfile::Builder::new()
             .prefix(".cspace-haptics-")
@@ -57,9 +80,17 @@ impl AtomicFile {
         match place {
             Place::File(own) => put_in_place(file, &own).map_err(bad),
             Place::Device(mut device) => {
-                let mut text = file.reopen().map_err(bad)?;
-                io::copy(&mut text, &mut device).map_err(bad)?;
+                io::copy(&mut file.reopen().map_err(bad)?, &mut device).map_err(bad)?;
                 Ok(())
+            }
+            Place::StandardOutput => {
+                let mut text = file.reopen().map_err(bad)?;
+                let mut out = io::stdout().lock();
+                match io::copy(&mut text, &mut out).and_then(|_| out.flush()) {
+                    // A reader that has gone away (`| head`) has seen what it wanted.
+                    Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(bad(e)),
+                    _ => Ok(()),
+                }
             }
         }
     }

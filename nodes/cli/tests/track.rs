@@ -28,17 +28,15 @@ impl Folder {
     }
 
     fn track(&self, out: &str) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_cspace-haptics"))
-            .args(["track", "--time", "--moving"])
-            .arg(self.path("a.obj"))
-            .arg("--fixed")
-            .arg(self.path("b.obj"))
-            .arg("--poses")
-            .arg(self.path("p.csv"))
-            .arg("--out")
-            .arg(self.path(out))
-            .output()
-            .unwrap()
+        self.command(out).output().unwrap()
+    }
+
+    fn command(&self, out: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_cspace-haptics"));
+        command.args(["track", "--time", "--moving"]).arg(self.path("a.obj"));
+        command.arg("--fixed").arg(self.path("b.obj")).arg("--poses").arg(self.path("p.csv"));
+        command.arg("--out").arg(self.path(out));
+        command
     }
 
     fn names(&self) -> Vec<String> {
@@ -88,6 +86,26 @@ fn one_row_a_pose_and_the_time_of_a_step() {
     let keys: Vec<&str> = time.split_whitespace().map(|w| w.split('=').next().unwrap()).collect();
     assert_eq!(keys, ["step_ns", "mean", "p50", "p99", "max", "n"], "{time}");
     assert!(time.trim_end().ends_with("n=3"), "{time}");
+}
+
+/// As root the pipe's link was replaced by a file: `--out /dev/stdout | ...` gave nothing, nor did anything after it.
+#[test]
+fn standard_output_is_written_to_and_stays_what_it_is() {
+    let folder = Folder::new();
+    assert!(folder.track("o.csv").status.success());
+    let rows = std::fs::read_to_string(folder.path("o.csv")).unwrap();
+    let link = folder.path("link.csv");
+    std::os::unix::fs::symlink("/proc/self/fd/1", &link).unwrap();
+    let piped = String::from_utf8(folder.track("link.csv").stdout).unwrap();
+    assert!(piped.starts_with(&format!("{rows}step_ns ")), "{piped}");
+    assert!(link.is_symlink());
+
+    // `>> kept.csv`: what is there stays.
+    folder.write("kept.csv", "before\n");
+    let kept = std::fs::OpenOptions::new().append(true).open(folder.path("kept.csv")).unwrap();
+    assert!(folder.command("link.csv").stdout(kept).status().unwrap().success());
+    let kept = std::fs::read_to_string(folder.path("kept.csv")).unwrap();
+    assert!(kept.starts_with(&format!("before\n{rows}step_ns ")), "{kept}");
 }
 
 #[test]
