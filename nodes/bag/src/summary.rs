@@ -158,6 +158,10 @@ impl fmt::Display for RunSummary {
         if self.states.len() > LINES {
             writeln!(f, "  and {} more", self.states.len() - LINES)?;
         }
+        // Rendered offline, not run: nothing was timed.
+        if self.compute.max_ns == 0 && self.wakeup.max_ns == 0 {
+            return Ok(());
+        }
         writeln!(f, "\ncomputing a tick\n{}\nlate at waking up\n{}", self.compute, self.wakeup)
     }
 }
@@ -252,6 +256,14 @@ mod tests {
         assert_eq!(bins.counts[..4], [2, 2, 2, 1]);
         assert_eq!(bins.counts.iter().sum::<u64>(), 8);
         assert_eq!(bins.max_ns, u32::MAX);
+    }
+
+    #[test]
+    fn only_ticks_that_were_run_have_times() {
+        let mut summary = run(&[(FormationKind::Free, 3)]);
+        assert!(!summary.to_string().contains("computing a tick"));
+        summary.add(&TickRecord { compute_ns: 900, ..TickRecord::default() });
+        assert!(summary.to_string().contains("computing a tick\n  mean 0.2 us, max 0.9 us\n"), "{summary}");
     }
 
     #[test]

@@ -72,6 +72,12 @@ impl AtomicFile {
         self.file.write_all(text.as_bytes()).map_err(|e| cannot_write(&self.path, &e))
     }
 
+    /// The temporary file, for writers that open by name what they write.
+    #[cfg(feature = "inspect")]
+    pub fn temporary(&self) -> &Path {
+        self.file.get_ref().path()
+    }
+
     /// Puts the file in its place.
     pub fn finish(self) -> Result<(), Failure> {
         let Self { path, place, file } = self;

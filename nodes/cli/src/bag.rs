@@ -61,6 +61,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 fn info(dir: &Path) -> Result<(), Failure> {
     let info = BagInfo::read(dir).map_err(Failure::plain)?;
+    let size: u64 = info.files.iter().map(|(_, bytes)| bytes).sum();
+    if size > 0 && info.topics.is_empty() && info.damage.iter().map(|d| d.length).sum::<u64>() == size {
+        return Err(Failure::file(dir, "nothing in it is MCAP: name a bag's folder or its .mcap file"));
+    }
     say(&format!("bag       {}", dir.display()))?;
     for (name, bytes) in &info.files {
         say(&format!("file      {name}, {:.3} MB", *bytes as f64 * 1e-6))?;

@@ -1,4 +1,5 @@
 use crate::failure::Failure;
+use bag::BagError;
 use bag::msg::{SceneDescription, ServoConfiguration};
 use scene::Scene;
 use servo::{Config, TickRecord};
@@ -16,7 +17,7 @@ impl BagOut {
     /// Writes the bag for the new folder `dir`.
     pub fn write(dir: &Path, scene: &Scene, config: &Config, records: &[TickRecord]) -> Result<Self, Failure> {
         if dir.symlink_metadata().is_ok() {
-            return Err(Failure::plain(bag::BagError::Exists(dir.to_owned())));
+            return Err(Failure::plain(BagError::Exists(dir.to_owned())));
         }
         let name = dir.file_name().ok_or_else(|| Failure::file(dir, "is no name for a new folder"))?.to_owned();
         let parent = match dir.parent() {
@@ -33,9 +34,10 @@ impl BagOut {
         let description = SceneDescription::new(&scene.name, &config.frame_id, &scene.bundle.yaml, files);
         let configuration = ServoConfiguration::new(&scene.name, &config.frame_id, &config.to_yaml());
         let place = temporary.path().join(&name);
-        bag::write_ticks(&place, &description, &configuration, records).map_err(|e| {
-            // The user knows the bag by its own name.
-            Failure::plain(e.to_string().replace(&*place.to_string_lossy(), &dir.to_string_lossy()))
+        bag::write_ticks(&place, &description, &configuration, records).map_err(|e| match e {
+            // Nothing of it stays.
+            BagError::Io { source, .. } => bad(source),
+            other => Failure::plain(other).known_as(&place, dir),
         })?;
         Ok(Self { temporary, name, dir: dir.to_owned() })
     }

@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 pub struct Cut {
     /// A contact state that lasts less is none, s; otherwise `contacts.debounce` of the bag's configuration (0.02).
-    #[arg(long, value_parser = not_negative)]
+    #[arg(long, value_parser = not_negative, allow_negative_numbers = true)]
     debounce: Option<f64>,
     /// A contact begins once the hand is this deep, metres; otherwise `contacts.min_depth` of the bag (1e-7).
-    #[arg(long, value_parser = not_negative)]
+    #[arg(long, value_parser = not_negative, allow_negative_numbers = true)]
     min_depth: Option<f64>,
     /// The topic of the ticks, if the bag holds those of several servos.
     #[arg(long)]

@@ -21,6 +21,12 @@ impl Failure {
         Self { line: Some(line), ..Self::file(file, reason) }
     }
 
+    /// The same of a file that the user knows as `shown`, not as the temporary one that it was written to.
+    pub fn known_as(self, temporary: &Path, shown: &Path) -> Self {
+        let rename = |text: &str| text.replace(&*temporary.to_string_lossy(), &shown.to_string_lossy());
+        Self { file: self.file.map(|f| rename(&f.to_string_lossy()).into()), reason: rename(&self.reason), ..self }
+    }
+
     /// A reason that names its file itself, or has none.
     #[allow(dead_code, reason = "not every feature set needs it")]
     pub fn plain(reason: impl fmt::Display) -> Self {

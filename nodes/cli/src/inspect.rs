@@ -1,11 +1,11 @@
 use crate::bag_scene::scene_of;
 use crate::failure::Failure;
 use crate::outputs::spare;
+use crate::rrd::{PATIENCE, fill};
 use ::inspect::{Options, Recorder, Sink, Subject, record_overview};
 use bag::{BagReader, Ticks};
 use scene::Scene;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 /// `inspect`: a rerun recording of a bag or a scene.
 #[derive(clap::Args)]
@@ -23,14 +23,12 @@ pub struct Args {
     scene: Option<PathBuf>,
 }
 
-/// A disk may be slow, but not this slow.
-const PATIENCE: Duration = Duration::from_secs(60);
-
 /// Runs `inspect`.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    spare(&args.rrd, &[&args.source])?;
-    let sink = Sink::File(args.rrd.clone());
-    if args.source.is_dir() { bag(&args.source, args, &sink) } else { scene(args, &sink) }
+    let file = fill(&args.rrd, &[&args.source], |sink| {
+        if args.source.is_dir() { bag(&args.source, args, sink) } else { scene(args, sink) }
+    })?;
+    file.finish()
 }
 
 fn scene(args: &Args, sink: &Sink) -> Result<(), Failure> {
@@ -46,8 +44,8 @@ fn load(path: &Path, rrd: &Path) -> Result<Scene, Failure> {
     Ok(scene)
 }
 
-/// The recorder is opened at the first tick: a bag without scene or ticks leaves no file behind. The scene may stand
-/// anywhere in the bag: a recorder that subscribes to the ticks first gets them first.
+/// The scene may stand anywhere in the bag: a recorder that subscribes to the ticks first gets them first. The picture's
+/// scale is that of the first tick's limits.
 fn bag(dir: &Path, args: &Args, sink: &Sink) -> Result<(), Failure> {
     let reader = BagReader::open(dir).map_err(Failure::plain)?;
     let ticks = Ticks::new(&reader, args.topic.as_deref()).map_err(Failure::plain)?;

@@ -160,7 +160,7 @@ fn render(args: &Args, scene: &Scene, config: &Config, motion: &Motion) -> Resul
     let bag = args.bag_out.as_ref().map(|dir| BagOut::write(dir, scene, config, &records)).transpose()?;
     #[cfg(feature = "inspect")]
     if let Some(rrd) = args.rrd() {
-        crate::rrd::record(rrd, scene, &records)?;
+        crate::rrd::fill(rrd, &inputs, |sink| crate::rrd::record(sink, scene, &records))?.finish()?;
     }
     out.finish()?;
     bag.map_or(Ok(()), BagOut::finish)?;

@@ -61,7 +61,7 @@ impl Motion {
         }
         Self {
             inputs: log.ticks.iter().map(|t| t.input).collect(),
-            times: log.ticks.iter().map(|t| seconds(t.input.stamp)).collect(),
+            times: times_of(&log.ticks),
             recorded: log.ticks,
             scene: log.scene,
             configuration: log.configuration,
@@ -98,6 +98,17 @@ impl Motion {
         let Some(s) = &self.scene else { return Ok(None) };
         scene_of(bag, s).map(Some)
     }
+}
+
+/// The time of each tick, s. A stamp counts whole nanoseconds, but `dt` is the difference of two numbers as they stood in a
+/// CSV: where the sum rounds to the stamp, it is the number that stood there.
+fn times_of(ticks: &[TickRecord]) -> Vec<f64> {
+    let mut last = None;
+    let time = |tick: &TickRecord| {
+        let sum = last.map(|last: f64| last + tick.input.dt).filter(|t| Stamp::from_secs_f64(*t) == tick.input.stamp);
+        *last.insert(sum.unwrap_or_else(|| seconds(tick.input.stamp)))
+    };
+    ticks.iter().map(time).collect()
 }
 
 /// Divided, not multiplied: the nearest number to the decimal one, which reads back from a CSV of poses.

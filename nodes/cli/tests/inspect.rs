@@ -88,3 +88,27 @@ fn a_recording_that_cannot_be_written_is_named_once() {
     assert_eq!((output.status.code(), said.matches("no/o.rrd").count()), (Some(1), 1), "{said}");
     assert!(!out.exists());
 }
+
+/// A recording that ended early (here: no ticks to draw) left a file that viewers open and show nothing of.
+#[test]
+fn a_recording_appears_whole_or_not_at_all_and_goes_where_a_pipe_leads() {
+    let folder = tempfile::tempdir().unwrap();
+    log(folder.path());
+    let (bag, rrd, link) = (folder.path().join("run"), folder.path().join("o.rrd"), folder.path().join("link.rrd"));
+    std::os::unix::fs::symlink("/proc/self/fd/1", &link).unwrap();
+    let to = |rrd: &Path| run("inspect", &[&bag, Path::new("--rrd"), rrd]);
+    assert!(to(&rrd).status.success());
+    let whole = std::fs::metadata(&rrd).unwrap().len();
+    let piped = to(&link).stdout;
+    assert!(piped.starts_with(b"RRF") && piped.len().abs_diff(whole as usize) < 4096, "{} of {whole}", piped.len());
+
+    // Cut in the middle: what was there stays, and nothing else is left behind.
+    let mut data = std::fs::read(bag.join("run_0.mcap")).unwrap();
+    data.truncate(200);
+    std::fs::write(bag.join("run_0.mcap"), data).unwrap();
+    let names = || folder.path().read_dir().unwrap().count();
+    let before = names();
+    assert_eq!(to(&rrd).status.code(), Some(1));
+    assert_eq!(to(&folder.path().join("new.rrd")).status.code(), Some(1));
+    assert_eq!((std::fs::metadata(&rrd).unwrap().len(), names()), (whole, before));
+}

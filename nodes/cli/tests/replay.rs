@@ -107,6 +107,22 @@ fn the_same_motion_gives_the_same_bytes_and_so_does_its_bag() {
     assert!(output.status.success() && said.contains(" differ from the recorded ones, first at tick "), "{said}");
 }
 
+/// Times that are no whole nanoseconds (7 * 0.001 is 0.007, 9 * 0.001 is 0.009000000000000001) came back rounded.
+#[test]
+fn times_come_back_from_a_bag_as_they_stood_in_the_csv() {
+    let folder = Folder::new();
+    let steps = [1e-3, 1.0 / 3e3, 0.0, 1e-4 * std::f64::consts::PI];
+    for (name, step) in steps.iter().enumerate() {
+        let row = |i: u32| format!("{:?},0.018,0.0,0.016,0.0,0.0,0.0,1.0\n", f64::from(i) * step);
+        std::fs::write(folder.path("p.csv"), format!("{POSE_HEADER}\n{}", (0..400).map(row).collect::<String>()))
+            .unwrap();
+        let (bag, out) = (folder.path(&format!("bag{name}")), folder.path("c.csv"));
+        assert!(folder.replay("a.csv", &["--bag-out", text(&bag)]).status.success());
+        assert!(run(&["replay", "--bag", text(&bag), "--out", text(&out)]).status.success());
+        assert!(folder.read("a.csv") == folder.read("c.csv"), "{step}");
+    }
+}
+
 #[test]
 fn time_is_one_line() {
     let folder = Folder::new();

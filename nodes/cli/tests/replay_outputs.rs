@@ -156,6 +156,24 @@ fn nothing_that_is_read_and_nothing_else_that_is_written_is_written_over() {
 }
 
 #[test]
+fn a_file_that_is_no_bag_is_told_and_a_damaged_bag_is_looked_into() {
+    let folder = tempfile::tempdir().unwrap();
+    let (csv, bag) = (folder.path().join("p.csv"), folder.path().join("bag"));
+    std::fs::write(&csv, two_arms(&bag)).unwrap();
+    let info = |path: &Path| {
+        Command::new(env!("CARGO_BIN_EXE_cspace-haptics")).args(["bag", "info"]).arg(path).output().unwrap()
+    };
+    let said = error(&info(&csv));
+    assert!(said.contains("p.csv: nothing in it is MCAP"), "{said}");
+    let file = bag.join("bag_0.mcap");
+    let mut data = std::fs::read(&file).unwrap();
+    data[..8].fill(0);
+    std::fs::write(&file, data).unwrap();
+    let said = String::from_utf8(info(&bag).stdout).unwrap();
+    assert!(said.contains("damage    bag_0.mcap at byte 0") && said.contains("/left/tool"), "{said}");
+}
+
+#[test]
 fn a_bag_without_motion_says_what_is_damaged() {
     let folder = tempfile::tempdir().unwrap();
     let (bag, out) = (folder.path().join("bag"), folder.path().join("o.csv"));

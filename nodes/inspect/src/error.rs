@@ -1,3 +1,4 @@
+use rerun::sink::SinkFlushError;
 use std::path::PathBuf;
 
 /// Why a recording could not be made.
@@ -27,6 +28,14 @@ pub enum InspectError {
         /// What rerun said.
         reason: String,
     },
+    /// The disk or the viewer took no more.
+    #[error("{sink}: the recording was cut short ({reason}): is the disk full, or the viewer gone?")]
+    Cut {
+        /// File or address.
+        sink: String,
+        /// What rerun said.
+        reason: String,
+    },
     /// No thread for the recording.
     #[error("inspect: cannot start a thread: {reason}")]
     Thread {
@@ -36,4 +45,14 @@ pub enum InspectError {
     /// rerun refused the data: an error in this crate.
     #[error("rerun: {0}")]
     Log(#[from] rerun::RecordingStreamError),
+}
+
+impl InspectError {
+    pub(crate) fn flush(sink: String, error: &SinkFlushError) -> Self {
+        let reason = error.to_string();
+        match error {
+            SinkFlushError::Timeout => Self::Flush { sink, reason },
+            SinkFlushError::Failed { .. } => Self::Cut { sink, reason },
+        }
+    }
 }

@@ -35,7 +35,7 @@ const KINDS: [(&str, palette::Rgb); 4] =
 pub fn record_overview(subject: &Subject, sink: &Sink, timeout: Duration) -> Result<(), InspectError> {
     let stream = sink.open()?;
     record(&stream, subject)?;
-    stream.flush_with_timeout(timeout).map_err(|e| InspectError::Flush { sink: sink.name(), reason: e.to_string() })
+    stream.flush_with_timeout(timeout).map_err(|e| InspectError::flush(sink.name(), &e))
 }
 
 pub(crate) fn record(stream: &RecordingStream, subject: &Subject) -> RecordingStreamResult<()> {

@@ -181,7 +181,6 @@ impl Recorder {
             Some(clock) => self.series.flush(&self.stream, &clock)?,
             None => self.lay_out(DQuat::IDENTITY, true)?,
         }
-        let flushed = self.stream.flush_with_timeout(timeout);
-        flushed.map_err(|e| InspectError::Flush { sink: self.name, reason: e.to_string() })
+        self.stream.flush_with_timeout(timeout).map_err(|e| InspectError::flush(self.name, &e))
     }
 }

@@ -1,6 +1,6 @@
 use crate::SceneError;
 use serde::Deserialize;
-use serde_saphyr::Spanned;
+use serde_saphyr::{MessageFormatter, Spanned, UserMessageFormatter};
 use spatial::{DVec3, Pose};
 use std::path::Path;
 
@@ -80,11 +80,9 @@ impl SceneFile {
     }
 }
 
-/// The parser's message without its own account of the place.
+/// The parser's message for users, without its own account of the place.
 fn plain(e: &serde_saphyr::Error) -> String {
-    let text = e.to_string();
-    let end = text.find(" at line ").or_else(|| text.find("\n")).unwrap_or(text.len());
-    text[..end].trim_start_matches("error: ").to_owned()
+    UserMessageFormatter.format_message(e).into_owned()
 }
 
 impl Entry {

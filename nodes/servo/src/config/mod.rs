@@ -11,6 +11,7 @@ pub use document::{markdown_table, parameter_file, yaml_template};
 pub use node_switch::{NodeSwitch, node_switches};
 pub use param::{ParamError, ParamSpec, Range, Value};
 pub use schema::schema;
+use serde_saphyr::{UserMessageFormatter, options::NonFiniteFloatPolicy};
 use tree::Tree;
 pub use values::{
     Config, ContactsConfig, DeviceConfig, Driver, JumpConfig, MappingConfig, PassivityConfig, RealtimeConfig,
@@ -27,8 +28,11 @@ impl Config {
     pub fn from_yaml(yaml: &str) -> Result<Self, ParamError> {
         let mut options = serde_saphyr::Options::default();
         options.with_snippet = false;
-        let tree: Tree = serde_saphyr::from_str_with_options(yaml, options)
-            .map_err(|e| ParamError::Syntax(format!("not a parameter file: {e}")))?;
+        // The schema refuses what is not finite, and knows the parameter's name.
+        options.non_finite_float_policy = NonFiniteFloatPolicy::PassThrough;
+        let tree: Tree = serde_saphyr::from_str_with_options(yaml, options).map_err(|e| {
+            ParamError::Syntax(format!("not a parameter file: {}", e.render_with_formatter(&UserMessageFormatter)))
+        })?;
         let mut config = Self::default();
         let mut set = |name: &str, value: &Value| {
             if node_switch::is_node_switch(name, value)? { Ok(()) } else { config.set(name, value) }

@@ -102,7 +102,7 @@ pub enum ParamError {
         suggestion: Option<&'static str>,
     },
     /// The value is of another type.
-    #[error("parameter `{name}` is a {got}: need a {want}")]
+    #[error("parameter `{name}` is of type {got}: need {want}")]
     Type {
         /// The parameter.
         name: &'static str,

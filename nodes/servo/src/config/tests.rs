@@ -38,13 +38,13 @@ fn forbidden_values_are_refused_with_the_reason() {
         ("gains.stiffness", Value::Float(f64::NAN), "1 to 20000 N/m"),
         ("gains.stiffness", Value::Float(f64::INFINITY), "1 to 20000 N/m"),
         ("gains.stiffness", Value::Float(-1.0), "1 to 20000 N/m"),
-        ("gains.stiffness", Value::Text("stiff".into()), "need a double"),
-        ("gains.stiffness", Value::Bool(true), "need a double"),
+        ("gains.stiffness", Value::Text("stiff".into()), "need double"),
+        ("gains.stiffness", Value::Bool(true), "need double"),
         ("law", Value::Text("magic".into()), "one of paper, pstar, blended, proxy"),
         ("realtime.priority", Value::Int(100), "0 to 99"),
-        ("realtime.priority", Value::Float(1.0), "need a integer"),
+        ("realtime.priority", Value::Float(1.0), "is of type double: need integer"),
         ("realtime.rate", Value::Int(100), "250 to 10000 Hz"),
-        ("passivity.enabled", Value::Int(1), "need a bool"),
+        ("passivity.enabled", Value::Int(1), "need bool"),
         ("stiffness", Value::Float(1.0), "is it `gains.stiffness`?"),
         ("nonsense", Value::Float(1.0), "unknown parameter `nonsense`"),
     ];
@@ -78,6 +78,10 @@ fn forbidden_files_are_refused() {
     ] {
         assert!(Config::from_yaml(yaml).is_err(), "{yaml:?}");
     }
+    let not_finite = Config::from_yaml("gains:\n  stiffness: .nan\n").unwrap_err().to_string();
+    assert_eq!(not_finite, "parameter `gains.stiffness` = NaN: need 1 to 20000 N/m");
+    let twice = Config::from_yaml("law: paper\nlaw: pstar\n").unwrap_err().to_string();
+    assert!(twice.contains("duplicate mapping key `law` is not allowed here"), "{twice}");
     let config =
         Config::from_yaml("a:\n  ros__parameters: {law: paper}\nb:\n  ros__parameters: {law: pstar}\n").unwrap();
     assert_eq!(config.gains.law, haptics::LawKind::Pstar, "later ones win");
