@@ -20,6 +20,8 @@ pub(crate) enum Corner {
 pub(crate) const PARALLEL_EDGES: f64 = 0.02;
 /// Cosines between the two faces, and between either and the sight, below which they do not lie over each other.
 const STEEP: f64 = 0.1;
+/// Vertices past a joint by a face that they lie farther below than this are none of its contacts, metres.
+const BELOW: f64 = 1e-6;
 
 /// Two faces and the direction in which they are laid on each other.
 #[derive(Clone, Copy, Debug)]
@@ -87,6 +89,45 @@ impl<'a> FacePair<'a> {
         let point = at + self.sight * span;
         let seen = self.pair.placed.seen_from_a(point);
         self.pair.a.face_sides(self.face_a).iter().all(|s| s.signed_distance(seen) < -same).then_some(point)
+    }
+
+    /// Whether the scope asks for vertices that stand past a joint, and there are joints where they may.
+    pub fn may_look_past(&self) -> bool {
+        !self.scope.along_near && self.pair.solids.is_hollow
+    }
+
+    /// Whether B's face, and whether A's, has such a joint: see [`FacePair::is_past_b`] and [`FacePair::past_a`].
+    pub fn looks_past(&self) -> [bool; 2] {
+        let Pair { solids, part, piece, .. } = self.pair;
+        [solids.fixed.is_hollow(piece, self.face_b), solids.moving.is_hollow(part, self.face_a)]
+    }
+
+    /// Whether the vertex of A at `point` stands past an obtuse hollow joint at the border of B's face, no farther than the reach.
+    ///
+    /// Its foot then lies in the next piece, and past the joint B's face asks less than that piece does. But a step that leads back
+    /// must see it before it is made: the vertex would cross the joint to and fro and never come to rest in it.
+    pub fn is_past_b(&self, point: DVec3, same: f64) -> bool {
+        let Pair { solids, b, piece, .. } = self.pair;
+        let height = self.height(point);
+        let foot = point - self.plane_b.normal * height;
+        self.is_beside(height, b.face_sides(self.face_b), foot, same) && solids.fixed.is_inside_another(piece, foot)
+    }
+
+    /// The same of the `j`-th vertex of B's face past a joint of A's: the point of A's plane over it. `on_a` is any point of A's face.
+    pub fn past_a(&self, j: usize, on_a: DVec3, same: f64) -> Option<DVec3> {
+        let Pair { solids, a, b, part, placed, .. } = self.pair;
+        let at = b.vertex(b.face_vertices(self.face_b)[j]);
+        let height = self.normal_a.dot(on_a - at);
+        let seen = placed.seen_from_a(at + self.normal_a * height);
+        (self.is_beside(height, a.face_sides(self.face_a), seen, same) && solids.moving.is_inside_another(part, seen))
+            .then(|| at + self.sight * (height / self.normal_a.dot(self.sight)))
+    }
+
+    /// Whether `foot` lies outside of the sides, but no farther than the reach, and `height` over the face is in reach, too.
+    fn is_beside(&self, height: f64, sides: &[Plane], foot: DVec3, same: f64) -> bool {
+        let reach = self.scope.reach;
+        let out = || sides.iter().map(|s| s.signed_distance(foot)).fold(f64::NEG_INFINITY, f64::max);
+        (-BELOW..=reach).contains(&height) && (same..=reach).contains(&out())
     }
 
     /// The basic contact at a corner of the region, from the point of A's face there. None where there is no border to touch,

@@ -5,10 +5,12 @@ use crate::pair::{Pair, edges_of_a, edges_of_b};
 use cspace::{BasicContact, CFace, EdgeId, is_applicable_turned};
 use spatial::DVec3;
 
-/// How far inside of an edge's end, as a part of the edge, it is asked whether the edge is one of the solid.
-const INSIDE: f64 = 1e-2;
 /// Farthest past a joint that the contact before it counts, metres: more than a hand moves in a tick.
 const PAST: f64 = 2e-4;
+/// How far from the place, as parts of that, it is asked whether the edge is one of the solid: the joint may lie in the edge's midst.
+const BEFORE: [f64; 4] = [1.0, 0.25, 1.0 / 16.0, 1.0 / 64.0];
+/// The same as a part of the edge: no nearer to its ends, and no farther.
+const INSIDE: f64 = 1e-2;
 
 /// Gives `offer` the edge contacts at Near's features, and `last`, that are the solid's up to a joint and not at it, where another
 /// piece stands across, with their places on B. The pair's own nearest plane is a seam's as soon as the place has passed the
@@ -75,8 +77,16 @@ fn hollow_end(pair: &Pair<'_>, (edge_a, edge_b): (EdgeId, EdgeId), normal_w: DVe
     // Past an end that is none of a hollow joint there is nothing.
     let goes_on = |hollow: bool, past: f64| hollow || past == 0.0;
     let is_hollow = (hollow_a || hollow_b) && goes_on(hollow_a, past_a) && goes_on(hollow_b, past_b);
-    let inside = |s: f64| s.clamp(INSIDE, 1.0 - INSIDE);
-    (is_hollow && felt_a(inside(s)) && felt_b(inside(t))).then(|| ends_b[0].lerp(ends_b[1], t))
+    let felt_near_a = || !hollow_a || places_before(s, ends_a).any(felt_a);
+    let felt_near_b = || !hollow_b || places_before(t, ends_b).any(felt_b);
+    (is_hollow && felt_near_a() && felt_near_b()).then(|| ends_b[0].lerp(ends_b[1], t))
+}
+
+/// Places on either side of `s` where the edge may still be one of the solid.
+fn places_before(s: f64, [from, to]: [DVec3; 2]) -> impl Iterator<Item = f64> {
+    let length = from.distance(to);
+    let at = move |way: f64| (s + way / length).clamp(INSIDE, 1.0 - INSIDE);
+    BEFORE.iter().flat_map(move |part| [at(part * PAST), at(-part * PAST)])
 }
 
 /// How far beyond the ends the place `s` lies, metres.

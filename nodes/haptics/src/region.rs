@@ -216,6 +216,28 @@ impl Clipper {
                 add(Corner::OfB(j), point);
             }
         }
+        if faces.may_look_past() {
+            self.past_joints(faces, same, &mut add);
+        }
+    }
+
+    /// Gives `add` the vertices that stand past a joint of the other face: see [`FacePair::is_past_b`]. After [`Clipper::edges_of_a`].
+    #[inline(never)]
+    fn past_joints(&self, faces: &FacePair<'_>, same: f64, add: &mut impl FnMut(Corner, DVec3)) {
+        let [past_b, past_a] = faces.looks_past();
+        if past_b {
+            let ring = &self.ring[..self.ring.len() - 1];
+            for (i, point) in ring.iter().enumerate().filter(|(_, p)| faces.is_past_b(**p, same)) {
+                add(Corner::OfA(i), *point);
+            }
+        }
+        if past_a {
+            for j in 0..self.cuts.len() {
+                if let Some(point) = faces.past_a(j, self.ring[0], same) {
+                    add(Corner::OfB(j), point);
+                }
+            }
+        }
     }
 
     /// Gives `add` the vertices of A's face that lie over B's face, and where A's edges cross B's: A's edges are cut by the sides

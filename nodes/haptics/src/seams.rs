@@ -10,6 +10,8 @@ const ON_SURFACE: f64 = 1e-7;
 const FLAT: f64 = 1e-6;
 /// A surface that falls by more than this (radians) beyond a side ends there: meshes hold their facets flat to less.
 const FALL: f64 = 1e-3;
+/// A surface that rises by more than this (metres per metre) beyond a side stands upright: a vertex has its foot on either face.
+const STEEP: f64 = 5.0;
 
 /// How much of a face lies inside other pieces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +40,8 @@ pub(crate) struct Seams {
     live_edges: Vec<Vec<bool>>,
     /// For each piece, face and side: how much of the side the surface goes on beyond.
     sides: Vec<Vec<Vec<Cover>>>,
+    /// For each piece and face whether it ends at an obtuse hollow joint somewhere.
+    hollow: Vec<Vec<bool>>,
     /// For each piece and vertex the neighbours that the vertex belongs to.
     at_vertex: Vec<Vec<Vec<u32>>>,
     /// For each piece and edge the neighbours that some of the edge's points may belong to.
@@ -85,6 +89,7 @@ impl Seams {
             cover,
             live_edges: Vec::new(),
             sides: Vec::new(),
+            hollow: Vec::new(),
             at_vertex: Vec::new(),
             at_edge: Vec::new(),
             over_face: Vec::new(),
@@ -96,6 +101,7 @@ impl Seams {
         seams.over_face = (0..n).map(|a| seams.planes_over_faces(a)).collect();
         seams.live_edges = (0..n).map(|a| seams.find_live_edges(a)).collect();
         seams.sides = (0..n).map(|a| seams.find_sides(a)).collect();
+        seams.hollow = (0..n).map(|a| seams.find_hollow(a)).collect();
         seams
     }
 
@@ -154,7 +160,7 @@ impl Seams {
         let of_side = |face: FaceId, side: usize| {
             let ring = p.face_vertices(face);
             let (a, b) = (p.vertex(ring[side]), p.vertex(ring[(side + 1) % ring.len()]));
-            let on = SAMPLES.iter().filter(|s| self.side_goes_on(piece, face, side, a.lerp(b, **s))).count();
+            let on = SAMPLES.iter().filter(|s| self.side_goes_on(piece, face, side, a.lerp(b, **s), -FALL)).count();
             match on {
                 0 => Cover::Open,
                 n if n == SAMPLES.len() => Cover::Internal,
@@ -162,6 +168,19 @@ impl Seams {
             }
         };
         p.faces().map(|f| (0..p.face_vertices(f).len()).map(|s| of_side(f, s)).collect()).collect()
+    }
+
+    fn find_hollow(&self, piece: usize) -> Vec<bool> {
+        let p = &self.pieces[piece];
+        let rises = |face: FaceId, side: usize| {
+            let ring = p.face_vertices(face);
+            let (a, b) = (p.vertex(ring[side]), p.vertex(ring[(side + 1) % ring.len()]));
+            SAMPLES.iter().map(|s| a.lerp(b, *s)).any(|at| {
+                let rises = |rise| self.side_goes_on(piece, face, side, at, rise);
+                rises(FALL) && !rises(STEEP)
+            })
+        };
+        p.faces().map(|f| (0..p.face_vertices(f).len()).any(|side| rises(f, side))).collect()
     }
 
     /// Whether a contact on the edge can be felt at all.
@@ -198,18 +217,34 @@ impl Seams {
         match self.sides[piece][face.index()][side] {
             Cover::Open => false,
             Cover::Internal => true,
-            Cover::Partial => self.side_goes_on(piece, face, side, point),
+            Cover::Partial => self.side_goes_on(piece, face, side, point, -FALL),
         }
     }
 
-    fn side_goes_on(&self, piece: usize, face: FaceId, side: usize, point: DVec3) -> bool {
+    /// Whether the surface bends up by less than a right angle at some side of the face.
+    pub fn is_hollow(&self, piece: usize, face: FaceId) -> bool {
+        self.hollow[piece][face.index()]
+    }
+
+    /// Whether any face does: see [`Seams::is_hollow`].
+    pub fn has_hollow(&self) -> bool {
+        self.hollow.iter().flatten().any(|h| *h)
+    }
+
+    /// Whether the point lies inside another piece.
+    pub fn is_inside_another(&self, piece: usize, point: DVec3) -> bool {
+        self.neighbors[piece].iter().any(|&other| self.pieces[other as usize].contains(point, 0.0))
+    }
+
+    /// Whether the surface goes on beyond the side at `point` and rises by `rise` radians or more there, which may be negative.
+    fn side_goes_on(&self, piece: usize, face: FaceId, side: usize, point: DVec3, rise: f64) -> bool {
         let p = &self.pieces[piece];
         let ring = p.face_vertices(face);
         let normal = p.face_plane(face).normal;
         let along = p.vertex(ring[(side + 1) % ring.len()]) - p.vertex(ring[side]);
         let outward = along.cross(normal).normalize_or_zero();
         // Bevels are shallow, so what lies beyond is told by the planes that meet at the point, not by a point farther on.
-        let beyond = outward - normal * FALL;
+        let beyond = outward + normal * rise;
         let here = 8.0 * self.tolerance;
         self.neighbors[piece].iter().any(|&other| {
             let q = &self.pieces[other as usize];

@@ -14,13 +14,16 @@ pub(crate) struct Solids {
     pub world: Arc<World>,
     pub moving: Seams,
     pub fixed: Seams,
+    /// Whether either has an obtuse hollow joint anywhere.
+    pub is_hollow: bool,
 }
 
 impl Solids {
     pub fn new(world: Arc<World>) -> Self {
         let moving = Seams::new(world.moving.clone());
         let fixed = Seams::new(world.fixed.iter().map(|p| p.polyhedron.clone()).collect());
-        Self { world, moving, fixed }
+        let is_hollow = moving.has_hollow() || fixed.has_hollow();
+        Self { world, moving, fixed, is_hollow }
     }
 
     pub fn part(&self, part: usize) -> &Polyhedron {

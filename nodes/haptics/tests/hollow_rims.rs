@@ -3,13 +3,13 @@
 
 mod support;
 
-use cspace::{Polyhedron, World};
+use cspace::{FixedPart, Polyhedron, World};
 use haptics::{Gains, LawKind, RenderLaw, Renderer};
 use rand::RngExt;
 use spatial::{DQuat, DVec3, Pose};
 use std::f64::consts::TAU;
 use std::sync::Arc;
-use support::{mm, penetration, random, world};
+use support::{block, cuboid, mm, penetration, random, world};
 
 /// An upright prism of `n` sides about the z axis, radius and z from and to in mm.
 fn prism(n: usize, radius: f64, z: [f64; 2]) -> Polyhedron {
@@ -113,6 +113,52 @@ fn a_round_part_whose_small_faces_lie_along_an_edge_keeps_both_their_ends_in_vie
         let (turn, roll) = (DQuat::from_scaled_axis(u(2.0)), u(0.2));
         let path = |s: f64| Pose::new(mm(-4.0 + 8.0 * s, 8.0 * s, 97.0), DQuat::from_scaled_axis(roll * s) * turn);
         let (worst, most) = created(&w, &path, 1500);
+        assert!(most > 1e-3, "{seed}: in contact ({most} J)");
+        assert!(worst < 1e-7, "{seed}: {worst} J from nowhere, of {most} J");
+    }
+}
+
+#[test]
+fn a_corner_of_a_peg_comes_to_rest_in_an_obtuse_joint_of_a_hole() {
+    for (sides, seed) in [(12, 1), (24, 2), (24, 20), (8, 30)] {
+        let mut rng = random::rng(seed);
+        let mut u = |most: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(-most..most)));
+        let (peg, plate) = (block(mm(6.0, 6.0, 30.0)), hole(sides, 10.0));
+        let held = World {
+            moving: plate.iter().cloned().map(Arc::new).collect(),
+            fixed: vec![FixedPart { polyhedron: Arc::new(peg.clone()), obstacle: 0 }],
+        };
+        let (aside, drift, lean, sway) = (u(1.0), u(0.4e-3), u(0.25), u(0.1));
+        let aside = DVec3::new(aside.x, aside.y, 0.0).normalize() * 8e-3;
+        let path = |s: f64| {
+            let place = aside + aside.cross(DVec3::Z) * 0.3 * s + drift * s;
+            Pose::new(place, DQuat::from_scaled_axis(lean + sway * (3.0 * s).sin()))
+        };
+        let back = |s: f64| path(s).inverse();
+        let of_peg = created(&world(peg, plate), &path, 800);
+        let of_plate = created(&Arc::new(held), &back, 800);
+        for (held, (worst, most)) in [("peg", of_peg), ("plate", of_plate)] {
+            assert!(most > 1e-3, "{held}, {sides} sides: in contact ({most} J)");
+            assert!(worst < 1e-7, "{held}, {sides} sides: {worst} J from nowhere, of {most} J");
+        }
+    }
+}
+
+#[test]
+fn a_plate_led_along_steps_rests_where_one_stands_across_the_midst_of_anothers_edge() {
+    // Steps side by side, each 3 mm lower than the last: the upright edge of one goes on past the bottom of its neighbour.
+    let steps = |k: i32| {
+        let (x, top) = (20.0 * f64::from(k), -3.0 * f64::from(k));
+        cuboid(mm(x - 10.0, -40.0, top - 20.0), mm(x + 10.0, 40.0, top))
+    };
+    let w = world(block(mm(40.0, 30.0, 2.0)), (-2..=2).map(steps).collect());
+    for seed in [9, 28] {
+        let mut rng = random::rng(seed);
+        let mut u = |most: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(-most..most)));
+        let (place, drift, lean, sway) = (u(10e-3), u(4e-3), u(0.3), u(0.1));
+        let before = DVec3::new(place.x, -52e-3, -20e-3);
+        let path = |s: f64| Pose::new(before + drift * s, DQuat::from_scaled_axis(lean + sway * (3.0 * s).sin()));
+        let (worst, most) = created(&w, &path, 800);
         assert!(most > 1e-3, "{seed}: in contact ({most} J)");
         assert!(worst < 1e-7, "{seed}: {worst} J from nowhere, of {most} J");
     }
