@@ -303,7 +303,8 @@ impl Proxy {
             };
             tries += 1;
             let left = self.projection.way_squared();
-            let old = self.view.replace(solids, k, &plane, true, &placed);
+            let old = self.view.replace_wall(solids, k, &plane, &self.pose, &placed);
+            k -= old.before;
             step = self.solve(metric, goal);
             if self.projection.way_squared() > NEARER * left {
                 self.view.restore(solids, &old, &placed);

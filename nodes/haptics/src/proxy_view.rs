@@ -24,6 +24,10 @@ const BESIDE: f64 = 1e-6;
 const TIE: f64 = 1e-9;
 /// A motion within which no C-face ties is known no farther than this, metres.
 const UNTIED: f64 = 1e-3;
+/// Planes of pairs whose normals (radians) and signed distances (metres) differ by no more than this are one wall's.
+const ONE_PLANE: f64 = 1e-9;
+/// Most planes of pairs that are replaced together.
+const TOGETHER: usize = 8;
 /// Bounds of the reach, metres.
 const SHORTEST: f64 = 2e-4;
 const LONGEST: f64 = 3e-3;
@@ -41,6 +45,20 @@ pub(crate) struct InReach {
     pub plane: CFace,
     /// See [`Scope::near_felt`].
     felt: bool,
+}
+
+/// Pairs whose planes were replaced together, as they were before.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Replaced {
+    old: [InReach; TOGETHER],
+    count: usize,
+    /// How many of them were listed before the one that was asked for.
+    pub before: usize,
+}
+
+/// Whether two planes are one wall's.
+fn is_one_plane(c: &CFace, d: &CFace) -> bool {
+    (c.distance - d.distance).abs() <= ONE_PLANE && c.normal_w.distance_squared(d.normal_w) <= ONE_PLANE * ONE_PLANE
 }
 
 /// A plane that no other ties with while the proxy stays near a pose: within `room` (metres) and `turn` (radians).
@@ -244,8 +262,38 @@ impl View {
         tied
     }
 
-    /// Lists the contacts of the `k`-th pair for this plane instead, last of all; returns the pair as it was.
-    pub fn replace(&mut self, solids: &Solids, k: usize, plane: &CFace, felt: bool, placed: &Placed) -> InReach {
+    /// Lists the contacts of the `k`-th pair for this plane instead, last of all, and likewise of the pairs that have the same two
+    /// planes: of the pieces that a wall is cut into, one alone that gives way frees nothing.
+    pub fn replace_wall(&mut self, solids: &Solids, k: usize, plane: &CFace, pose: &Pose, placed: &Placed) -> Replaced {
+        let wall = self.pairs[k].plane;
+        let mut replaced = Replaced { old: [self.pairs[k]; TOGETHER], count: 1, before: 0 };
+        self.replace(solids, k, plane, true, placed);
+        let mut i = 0;
+        for _ in 0..self.pairs.len() - 1 {
+            let pair = self.pairs[i];
+            let same_wall = replaced.count < TOGETHER && is_one_plane(&pair.plane, &wall);
+            let tied = same_wall.then(|| self.tied_plane(solids, i, pose, placed)).flatten();
+            let Some(tied) = tied.filter(|tied| is_one_plane(tied, plane)) else {
+                i += 1;
+                continue;
+            };
+            self.replace(solids, i, &tied, true, placed);
+            replaced.old[replaced.count] = pair;
+            replaced.count += 1;
+            replaced.before += usize::from(i < k - replaced.before);
+        }
+        replaced
+    }
+
+    /// Takes back the last [`View::replace_wall`].
+    pub fn restore(&mut self, solids: &Solids, replaced: &Replaced, placed: &Placed) {
+        for old in &replaced.old[..replaced.count] {
+            self.replace(solids, self.pairs.len() - replaced.count, &old.plane, old.felt, placed);
+        }
+    }
+
+    /// Lists the contacts of the `k`-th pair for this plane instead, last of all.
+    fn replace(&mut self, solids: &Solids, k: usize, plane: &CFace, felt: bool, placed: &Placed) {
         let old = self.pairs.remove(k);
         let count = old.end - old.first;
         self.points[old.first..].rotate_left(count);
@@ -255,12 +303,6 @@ impl View {
             pair.end -= count;
         }
         self.list(solids, old.part, old.piece, plane, felt, placed);
-        old
-    }
-
-    /// Takes back the last [`View::replace`].
-    pub fn restore(&mut self, solids: &Solids, old: &InReach, placed: &Placed) {
-        self.replace(solids, self.pairs.len() - 1, &old.plane, old.felt, placed);
     }
 
     /// Moves the contacts along with a small step to `pose`, to first order: those that so small steps can close.

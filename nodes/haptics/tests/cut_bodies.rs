@@ -9,7 +9,7 @@ use rand::RngExt;
 use spatial::{DQuat, DVec3, Pose};
 use std::sync::Arc;
 use support::cuboid;
-use support::random::{Rng, rng};
+use support::random::{Rng, hull, rng};
 
 const LAWS: [LawKind; 4] = [LawKind::Paper, LawKind::Pstar, LawKind::Blended, LawKind::Proxy];
 /// Worlds of each kind, and ticks in each.
@@ -111,6 +111,31 @@ fn cut_parts_on_cut_floors_and_walls_feel_like_the_whole_ones() {
                     assert!(same || jumps, "{at}: {found:?}, not {expected:?}");
                 }
             }
+        }
+    }
+}
+
+/// A solid given twice is one wall that two pairs hold the part off: where a part comes up a slope and over its edge, both let go of
+/// the slope at once.
+#[test]
+fn a_solid_given_twice_feels_like_one_where_the_proxy_passes_an_edge() {
+    let ring = |half: f64, z: f64| {
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x * half, y * half, z) * 1e-3)
+    };
+    let block = || hull(&[ring(40.0, -30.0), ring(40.0, -10.0), ring(20.0, 0.0)].concat());
+    for seed in 1..=SEEDS {
+        let mut rng = rng(seed);
+        let mut corner = || DVec3::from_array([0; 3].map(|_| rng.random_range(-1.0..1.0))).normalize() * 0.01;
+        let part = hull(&(0..8).map(|_| corner()).collect::<Vec<_>>());
+        let hands = motion(&mut rng, part.vertices(), false, false);
+        let (once, twice) = (world(vec![part.clone()], vec![block()]), world(vec![part], vec![block(), block()]));
+        let gains = Gains { law: LawKind::Proxy, ..Gains::default() };
+        let (mut a, mut b) = (Renderer::new(once), Renderer::new(twice));
+        for (tick, hand) in hands.iter().enumerate() {
+            let (expected, found) = (a.render(hand, &gains, 1e-3).wrench, b.render(hand, &gains, 1e-3).wrench);
+            let same =
+                (found.force - expected.force).length() < 1e-6 && (found.torque - expected.torque).length() < 1e-6;
+            assert!(same, "seed {seed}, tick {tick}: {found:?}, not {expected:?}");
         }
     }
 }
