@@ -143,6 +143,33 @@ fn bad_meshes_are_refused_with_their_line() {
     }
 }
 
+/// A turned cube of triangles in six significant digits: no two triangles of a face are in one plane any more.
+#[test]
+fn faces_that_are_bent_by_the_digits_of_the_file_alone_are_plane() {
+    let folder = Folder::new();
+    let turn = spatial::DQuat::from_rotation_z(0.7) * spatial::DQuat::from_rotation_x(1.1);
+    let mut text = String::new();
+    for line in CUBE.lines() {
+        let words: Vec<&str> = line.split(' ').collect();
+        if words[0] == "v" {
+            let [x, y, z] = [1, 2, 3].map(|i| words[i].parse::<f64>().unwrap());
+            let v = turn * spatial::DVec3::new(x, y, z);
+            text += &format!("v {:.5} {:.5} {:.5}\n", v.x, v.y, v.z);
+        } else {
+            let [a, b, c, d] = [1, 2, 3, 4].map(|i| words[i]);
+            text += &format!("f {a} {b} {c}\nf {a} {c} {d}\n");
+        }
+    }
+    folder.write("a.obj", text);
+    let q = turn.inverse();
+    folder.write("p.csv", format!("t,x,y,z,qx,qy,qz,qw\n0,0,0,2.5,{},{},{},{}\n", q.x, q.y, q.z, q.w));
+    let output = folder.track("o.csv");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let rows = std::fs::read_to_string(folder.path("o.csv")).unwrap();
+    let distance: f64 = rows.lines().nth(1).unwrap().split(',').nth(1).unwrap().parse().unwrap();
+    assert!((distance - 0.5).abs() < 2e-5, "{distance}");
+}
+
 #[test]
 fn bad_poses_are_refused_with_their_line() {
     let cases = [

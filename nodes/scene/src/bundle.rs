@@ -1,6 +1,7 @@
 use crate::scene_file::{Entry, SceneFile};
 use crate::urdf::{UrdfShape, parse_urdf};
-use crate::{Mesh, MeshError, SceneError, parse_obj, parse_stl};
+use crate::{Mesh, MeshError, SceneError, flattened, parse_obj, parse_stl};
+use cspace::Polyhedron;
 use serde::{Deserialize, Serialize};
 use spatial::{DVec3, Pose};
 use std::collections::BTreeMap;
@@ -107,13 +108,16 @@ fn extension(name: &str) -> String {
 }
 
 fn parse_mesh(name: &str, bytes: &[u8]) -> Result<Mesh, MeshError> {
-    match extension(name).as_str() {
+    let mesh = match extension(name).as_str() {
         "obj" => {
-            parse_obj(std::str::from_utf8(bytes).map_err(|_| MeshError::whole("not UTF-8 text: not an OBJ file"))?)
+            parse_obj(std::str::from_utf8(bytes).map_err(|_| MeshError::whole("not UTF-8 text: not an OBJ file"))?)?
         }
-        "stl" => Ok(parse_stl(bytes)?.welded()),
-        other => Err(MeshError::whole(format!("unknown kind of mesh {other:?}: need .obj, .stl or .urdf"))),
-    }
+        "stl" => parse_stl(bytes)?.welded(),
+        other => return Err(MeshError::whole(format!("unknown kind of mesh {other:?}: need .obj, .stl or .urdf"))),
+    };
+    // Faces that their digits have bent would be cut into slivers.
+    let bent = Polyhedron::from_faces(&mesh.vertices, &mesh.faces).is_err().then(|| flattened(&mesh)).flatten();
+    Ok(bent.unwrap_or(mesh))
 }
 
 fn urdf(bytes: &[u8], file: &Path) -> Result<Vec<crate::urdf::UrdfGeometry>, SceneError> {

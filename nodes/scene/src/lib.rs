@@ -6,6 +6,7 @@
 mod bundle;
 mod cut;
 mod error;
+mod flat;
 mod hull;
 mod mesh;
 mod obj;
@@ -17,6 +18,7 @@ mod urdf;
 
 pub use bundle::Bundle;
 pub use error::SceneError;
+pub use flat::flattened;
 pub use mesh::{Mesh, MeshError};
 pub use obj::{ObjLines, parse_obj, parse_obj_with_lines};
 pub use scene::{Body, Scene};

@@ -54,9 +54,7 @@ impl Mesh {
             .vertices
             .iter()
             .map(|v| {
-                // Adding zero turns -0.0 into 0.0, so that equal positions have equal bits.
-                let bits = (*v + DVec3::ZERO).to_array().map(f64::to_bits);
-                *index_of.entry(bits).or_insert_with(|| {
+                *index_of.entry(position_bits(*v)).or_insert_with(|| {
                     welded.vertices.push(*v);
                     (welded.vertices.len() - 1) as u32
                 })
@@ -144,6 +142,11 @@ impl Mesh {
             (1..face.len() - 1).map(move |i| [at(0), at(i), at(i + 1)])
         })
     }
+}
+
+/// Equal positions have equal bits: adding zero turns -0.0 into 0.0.
+pub(crate) fn position_bits(v: DVec3) -> [u64; 3] {
+    (v + DVec3::ZERO).to_array().map(f64::to_bits)
 }
 
 fn root(parent: &mut [u32], mut i: u32) -> u32 {

@@ -55,7 +55,10 @@ fn solid(mesh: &Mesh, refused: PolyhedronError) -> Result<(Vec<Polyhedron>, Opti
             approximate(solid)
         });
         for piece in &meshes {
-            pieces.push(polyhedron(piece).or_else(|_| polyhedron(&hull(&piece.vertices).map_err(MeshError::whole)?))?);
+            let convex = polyhedron(piece).or_else(|_| polyhedron(&hull(&piece.vertices).map_err(MeshError::whole)?));
+            // A piece's own complaint would speak of faces that the file does not have.
+            let either = || format!("{refused}; it cannot be cut into convex pieces either: try `convex: hull`");
+            pieces.push(convex.map_err(|_| MeshError::whole(either()))?);
         }
     }
     if pieces.is_empty() {

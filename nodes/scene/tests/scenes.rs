@@ -178,3 +178,27 @@ fn a_mesh_too_intricate_to_cut_is_approximated_and_says_so() {
     assert!(scene.world.fixed.len() > 4);
     assert!(scene.world.fixed.iter().all(|f| !f.polyhedron.contains(spatial::DVec3::ZERO, 0.0)), "the hole is open");
 }
+
+/// Six decimals bend the triangles of a turned face out of its plane: an L came in slivers, a brick in five pieces.
+#[test]
+fn a_turned_solid_of_triangles_written_with_six_decimals_is_cut_at_its_joint_alone() {
+    let turn = spatial::DQuat::from_rotation_z(0.7) * spatial::DQuat::from_rotation_x(1.1);
+    let corners = [(0.0, 0.0), (0.06, 0.0), (0.06, 0.02), (0.02, 0.02), (0.02, 0.05), (0.0, 0.05)];
+    let mut text = String::new();
+    for z in [0.0, 0.03] {
+        for (x, y) in corners {
+            let v = turn * spatial::DVec3::new(x, y, z);
+            text += &format!("v {:.6} {:.6} {:.6}\n", v.x, v.y, v.z);
+        }
+    }
+    for [a, b, c] in [[1, 2, 3], [1, 3, 4], [1, 4, 5], [1, 5, 6]] {
+        text += &format!("f {c} {b} {a}\nf {} {} {}\n", a + 6, b + 6, c + 6);
+    }
+    for i in 1..=6 {
+        let j = i % 6 + 1;
+        text += &format!("f {i} {j} {}\nf {i} {} {}\n", j + 6, j + 6, i + 6);
+    }
+    let scene = scene_of(&[("tetra.obj", TETRA.into()), ("l.obj", text)], "").unwrap();
+    assert_eq!(scene.fixed[0].note.as_deref(), Some("not convex: cut into 2 convex pieces"));
+    assert!(scene.world.fixed.iter().all(|piece| piece.polyhedron.face_count() == 6));
+}
