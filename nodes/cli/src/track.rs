@@ -65,12 +65,7 @@ fn read_polyhedron(path: &Path) -> Result<Arc<Polyhedron>, Failure> {
     let text = read_text(path)?;
     let (mesh, lines) =
         scene::parse_obj_with_lines(&text).map_err(|e| Failure::line(path, e.line.unwrap_or(1), e.reason))?;
-    let polyhedron = Polyhedron::from_faces(&mesh.vertices, &mesh.faces).or_else(|refused| {
-        // Faces that are bent by the digits of the file alone are meant to be plane.
-        let flat = scene::flattened(&mesh).and_then(|m| Polyhedron::from_faces(&m.vertices, &m.faces).ok());
-        flat.ok_or(refused)
-    });
-    polyhedron.map(Arc::new).map_err(|e| {
+    scene::polyhedron(&mesh).map(Arc::new).map_err(|e| {
         let face = e.face().and_then(|f| lines.faces.get(f));
         let line = face.or_else(|| e.vertex().and_then(|v| lines.vertices.get(v)));
         Failure::line(path, line.copied().unwrap_or(1), format!("{e} (faces and vertices counted from 0)"))

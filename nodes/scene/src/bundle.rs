@@ -1,7 +1,7 @@
+use crate::flat::straightened;
 use crate::scene_file::{Entry, SceneFile};
 use crate::urdf::{UrdfShape, parse_urdf};
-use crate::{Mesh, MeshError, SceneError, flattened, parse_obj, parse_stl};
-use cspace::Polyhedron;
+use crate::{Mesh, MeshError, SceneError, parse_obj, parse_stl};
 use serde::{Deserialize, Serialize};
 use spatial::{DVec3, Pose};
 use std::collections::BTreeMap;
@@ -110,14 +110,12 @@ fn extension(name: &str) -> String {
 fn parse_mesh(name: &str, bytes: &[u8]) -> Result<Mesh, MeshError> {
     let mesh = match extension(name).as_str() {
         "obj" => {
-            parse_obj(std::str::from_utf8(bytes).map_err(|_| MeshError::whole("not UTF-8 text: not an OBJ file"))?)?
+            parse_obj(std::str::from_utf8(bytes).map_err(|_| MeshError::whole("not UTF-8 text: not an OBJ file"))?)
         }
-        "stl" => parse_stl(bytes)?.welded(),
-        other => return Err(MeshError::whole(format!("unknown kind of mesh {other:?}: need .obj, .stl or .urdf"))),
+        "stl" => Ok(parse_stl(bytes)?.welded()),
+        other => Err(MeshError::whole(format!("unknown kind of mesh {other:?}: need .obj, .stl or .urdf"))),
     };
-    // Faces that their digits have bent would be cut into slivers.
-    let bent = Polyhedron::from_faces(&mesh.vertices, &mesh.faces).is_err().then(|| flattened(&mesh)).flatten();
-    Ok(bent.unwrap_or(mesh))
+    mesh.map(straightened)
 }
 
 fn urdf(bytes: &[u8], file: &Path) -> Result<Vec<crate::urdf::UrdfGeometry>, SceneError> {

@@ -2,6 +2,7 @@
 
 use crate::Mesh;
 use crate::mesh::position_bits;
+use cspace::{Polyhedron, PolyhedronError};
 use spatial::{DMat3, DVec3};
 use std::collections::HashMap;
 
@@ -10,16 +11,39 @@ use std::collections::HashMap;
 const STEPS: f64 = 4.0;
 /// Fewer digits than these are somebody's own numbers, not rounded ones.
 const LEAST_DIGITS: i32 = 5;
-/// No face is bent by more than this, of the size, whatever the digits.
+/// Most that the digits may leave open, of the size, where they make a surface dented; where it is convex as it stands, too,
+/// its facets are left alone unless this small part of the size is all that tells them apart.
 const MOST: f64 = 1e-4;
+const MOST_OF_CONVEX: f64 = 1e-6;
 
-/// The mesh with faces made plane as far as the digits of its coordinates leave that open, its vertices and faces in the
-/// same order; `None` where they do not, or where it cannot be done.
+/// The polyhedron of a mesh, its faces made plane as far as the digits of the coordinates leave that open and it is not
+/// convex without that. Vertices and faces count as in the mesh.
+///
+/// # Errors
+/// The mesh is not convex, however the digits are read.
+pub fn polyhedron(mesh: &Mesh) -> Result<Polyhedron, PolyhedronError> {
+    let whole = |m: &Mesh| Polyhedron::from_faces(&m.vertices, &m.faces);
+    whole(mesh).or_else(|refused| flattened(mesh, MOST).and_then(|m| whole(&m).ok()).ok_or(refused))
+}
+
+/// The mesh with faces made plane where the digits of its coordinates have bent them: dented ones would be cut into slivers,
+/// and of bulging ones contact would know only a facet at a time.
 #[must_use]
-pub fn flattened(mesh: &Mesh) -> Option<Mesh> {
+pub fn straightened(mesh: Mesh) -> Mesh {
+    let faces = |m: &Mesh| Polyhedron::from_faces(&m.vertices, &m.faces).map(|p| p.face_count());
+    let flat = match faces(&mesh) {
+        Err(_) => flattened(&mesh, MOST),
+        Ok(count) => flattened(&mesh, MOST_OF_CONVEX).filter(|m| faces(m).is_ok_and(|flat| flat < count)),
+    };
+    flat.unwrap_or(mesh)
+}
+
+/// The mesh with faces made plane as far as the digits of its coordinates leave that open, `most` of the size at most, its
+/// vertices and faces in the same order; `None` where they do not, or where it cannot be done.
+fn flattened(mesh: &Mesh, most: f64) -> Option<Mesh> {
     let size = mesh.size();
     let tolerance = STEPS * last_digit(&mesh.vertices)?;
-    if !(tolerance > 1e-12 * size && tolerance <= MOST * size) {
+    if !(tolerance > 1e-12 * size && tolerance <= most * size) {
         return None;
     }
     let welded = mesh.welded();
@@ -181,7 +205,6 @@ fn nearest_on_all(p: DVec3, planes: &[Plane]) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cspace::Polyhedron;
     use spatial::DQuat;
 
     /// Outline (counter-clockwise) times height, its faces as triangles; turned askew.
@@ -229,27 +252,42 @@ mod tests {
             for (digits, step) in [(6, 1e-6), (7, 1e-7)] {
                 let file = written(&part, decimals(digits));
                 refused += usize::from(faces(&file).is_none());
-                let flat = flattened(&file).unwrap();
+                let flat = flattened(&file, MOST).unwrap();
                 assert_eq!(faces(&flat), Some(count), "{digits} decimals");
                 for (a, b) in flat.vertices.iter().zip(&part.vertices) {
                     assert!(a.distance(*b) < 4.0 * step, "{digits} decimals: {a} for {b}");
                 }
             }
             let single = written(&part, |x| f64::from(x as f32));
-            assert_eq!(faces(&flattened(&single).unwrap()), Some(count));
+            assert_eq!(faces(&flattened(&single, MOST).unwrap()), Some(count));
             let nine = written(&single, |x| format!("{x:.8e}").parse().unwrap());
-            assert_eq!(faces(&flattened(&nine).unwrap()), Some(count));
+            assert_eq!(faces(&flattened(&nine, MOST).unwrap()), Some(count));
         }
         assert!(refused >= 4, "only {refused} were refused as written: the test shows nothing");
     }
 
     #[test]
+    fn facets_of_a_convex_part_are_one_where_only_the_last_of_seven_digits_tells_them_apart() {
+        let brick = triangles(&[(0.0, 0.0), (0.05, 0.0), (0.05, 0.04), (0.0, 0.04)], 0.03);
+        let single = written(&brick, |x| f64::from(x as f32));
+        assert!(faces(&single).is_some_and(|n| n > 6), "{:?} faces: the test shows nothing", faces(&single));
+        assert_eq!(faces(&straightened(single)), Some(6));
+        // One corner of the lid a hundredth of a millimetre lower: the lid has two faces.
+        let mut roof = brick;
+        let up = (roof.vertices[5] - roof.vertices[1]).normalize();
+        roof.vertices[5] -= 1e-5 * up;
+        for file in [written(&roof, decimals(7)), written(&roof, |x| f64::from(x as f32))] {
+            assert_eq!(faces(&straightened(file)), Some(7));
+        }
+    }
+
+    #[test]
     fn numbers_with_all_their_digits_or_somebodys_own_are_left_alone() {
         let part = triangles(&round(32), 0.06);
-        assert_eq!(flattened(&part), None);
+        assert_eq!(flattened(&part, MOST), None);
         let mut dented = part;
         dented.vertices[3] *= 1.0 - 1e-4;
-        assert_eq!(flattened(&dented), None);
+        assert_eq!(flattened(&dented, MOST), None);
         // An L of whole numbers, and one with a step of a hundredth in its floor.
         for outline in [
             [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)],
@@ -259,7 +297,7 @@ mod tests {
             let ring = |z: f64| outline.iter().map(move |&(x, y)| DVec3::new(x, y, z));
             let mut mesh = triangles(&outline, 1.0);
             mesh.vertices = ring(0.0).chain(ring(1.0)).collect();
-            assert_eq!((flattened(&mesh), mesh.vertices.len() as u32), (None, 2 * n));
+            assert_eq!((flattened(&mesh, MOST), mesh.vertices.len() as u32), (None, 2 * n));
         }
     }
 
@@ -271,6 +309,6 @@ mod tests {
         part.vertices[35] += 2e-5 * up;
         let file = written(&part, decimals(6));
         assert_eq!(faces(&file), None);
-        assert_eq!(flattened(&file).and_then(|m| faces(&m)).filter(|n| *n <= 34), None);
+        assert_eq!(flattened(&file, MOST).and_then(|m| faces(&m)).filter(|n| *n <= 34), None);
     }
 }

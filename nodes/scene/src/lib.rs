@@ -18,7 +18,7 @@ mod urdf;
 
 pub use bundle::Bundle;
 pub use error::SceneError;
-pub use flat::flattened;
+pub use flat::polyhedron;
 pub use mesh::{Mesh, MeshError};
 pub use obj::{ObjLines, parse_obj, parse_obj_with_lines};
 pub use scene::{Body, Scene};
