@@ -1,6 +1,5 @@
 //! The laws that read the wrench off the hand's own pose: `paper`, `pstar` and `blended`.
 
-use crate::facing::lone_contact;
 use crate::paper_torque::torque;
 use crate::placed::Placed;
 use crate::reduced_hull::nearest_point;
@@ -9,6 +8,7 @@ use crate::scp::{Scp, TIED, Touch};
 use crate::sense::Sensed;
 use crate::shares::Shares;
 use crate::solid::Solids;
+use crate::tied::tied_contacts;
 use crate::{ContactPoint, FormationKind, Gains, LawKind, LawOutput};
 use cspace::{BasicContact, contact_point_turned};
 use spatial::{DVec3, Pose};
@@ -100,11 +100,9 @@ impl DepthLaw {
             let within = if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
             let limit = t.plane.distance + within;
             t.first = self.points.len();
-            if let Some(lone) = lone_contact(&pair, &t.plane, within) {
-                push_within(&mut self.points, lone);
-            } else {
-                // Along Near's normal no contact can be deeper than Near.
-                let scope = Scope { reach: limit, near_felt: true, wide: law == LawKind::Blended, along_near: true };
+            // Along Near's normal no contact can be deeper than Near.
+            let scope = Scope { reach: limit, near_felt: true, wide: law == LawKind::Blended, along_near: true };
+            if !tied_contacts(&pair, &t.plane, within, &scope, &mut self.points) {
                 self.clipper.region(&pair, &t.plane, &scope, &mut self.points);
             }
             t.end = self.points.len();

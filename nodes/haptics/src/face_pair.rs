@@ -61,6 +61,21 @@ impl<'a> FacePair<'a> {
         self.pair.a.face_vertices(self.face_a)
     }
 
+    /// The edges of A's face: see [`FacePair::ring_a`].
+    pub fn edges_a(&self) -> &'a [EdgeId] {
+        self.pair.a.face_edges(self.face_a)
+    }
+
+    /// The sides of B's face.
+    pub fn sides_b(&self) -> &'a [Plane] {
+        self.pair.b.face_sides(self.face_b)
+    }
+
+    /// Where the sight through a point meets B's plane.
+    pub fn foot(&self, p: DVec3) -> DVec3 {
+        p - self.sight * (self.height(p) / self.slope)
+    }
+
     /// How high a point lies above B's plane, metres.
     pub fn height(&self, p: DVec3) -> f64 {
         self.plane_b.signed_distance(p)

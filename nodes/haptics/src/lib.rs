@@ -30,9 +30,11 @@ mod seams;
 mod sense;
 mod shares;
 mod solid;
+mod span;
 mod steadying;
 #[cfg(test)]
 mod testing;
+mod tied;
 
 pub use coupling::{Coupling, low_pass_share};
 pub use formation::{ContactFormation, ContactPoint, FormationKind, MAX_CONTACTS};

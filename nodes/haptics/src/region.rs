@@ -4,6 +4,7 @@ use crate::face_pair::{Corner, FacePair, PARALLEL_EDGES};
 use crate::facing::facing_point;
 use crate::pair::Pair;
 use crate::sense::Sensed;
+use crate::span::{Cut, Span};
 use cspace::{BasicContact, CFace, FaceId, Polyhedron, World};
 use spatial::DVec3;
 
@@ -36,57 +37,6 @@ impl RegionPoint {
         }
         self.point_w += along_b * (motion.cross(along_a).dot(n) / -(length * length));
         self.normal_w = n * (lean.signum() / length);
-    }
-}
-
-/// What of an edge of A lies over B's face: from where to where, 0 to 1, and the sides of B's face that cut it.
-#[derive(Clone, Copy, Debug)]
-struct Span {
-    enter: Cut,
-    leave: Cut,
-}
-
-/// Where an edge is cut, 0 to 1.
-#[derive(Clone, Copy, Debug)]
-struct Cut {
-    at: f64,
-    /// Where the side's own line is crossed: what lies outside by a little counts as inside.
-    line: f64,
-    /// `NONE` where the edge's own end lies over the face.
-    side: u32,
-}
-
-impl Cut {
-    const NONE: u32 = u32::MAX;
-}
-
-impl Span {
-    const WHOLE: Self =
-        Self { enter: Cut { at: 0.0, line: 0.0, side: Cut::NONE }, leave: Cut { at: 1.0, line: 1.0, side: Cut::NONE } };
-
-    /// Cuts by the side `side`, beyond which the ends lie by `p` and `q`, metres; up to `same` counts as inside.
-    #[inline]
-    fn cut(&mut self, side: u32, p: f64, q: f64, same: f64) {
-        let (outside_p, outside_q) = (p > same, q > same);
-        if outside_p == outside_q {
-            if outside_p {
-                self.enter.at = f64::INFINITY;
-            }
-            return;
-        }
-        let per = 1.0 / (p - q);
-        let cut = Cut { at: (p - same) * per, line: (p * per).clamp(0.0, 1.0), side };
-        if outside_p {
-            if cut.at >= self.enter.at {
-                self.enter = cut;
-            }
-        } else if cut.at <= self.leave.at {
-            self.leave = cut;
-        }
-    }
-
-    fn is_empty(&self) -> bool {
-        self.enter.at > self.leave.at
     }
 }
 
@@ -145,7 +95,7 @@ impl Clipper {
         let same = same_place(pair);
         let first = out.len();
         // Near's own contact first, at its exact place, when its features face each other.
-        let own = if scope.near_felt { facing_point(pair, near, 1e3 * same) } else { None };
+        let own = if scope.near_felt { facing_point(pair, near, own_tolerance(pair)) } else { None };
         if let Some(point_w) = own.filter(|_| near.distance <= scope.reach) {
             push(RegionPoint::of(near, point_w), (same, !scope.along_near), [first; 2], out);
         }
@@ -307,6 +257,11 @@ pub(crate) fn push_within(points: &mut Vec<RegionPoint>, p: RegionPoint) {
     if points.len() < points.capacity() {
         points.push(p);
     }
+}
+
+/// How far outside Near's features may face each other, metres.
+pub(crate) fn own_tolerance(pair: &Pair<'_>) -> f64 {
+    1e3 * same_place(pair)
 }
 
 /// Contacts closer together than this are one, metres.
