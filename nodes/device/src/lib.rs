@@ -16,5 +16,5 @@ pub use operator_config::{OperatorConfig, OperatorError};
 pub use operator_plan::{Bounds, OperatorPlan, Waypoint};
 pub use replay::{Replay, ReplayError};
 pub use simulated_operator::SimulatedOperator;
-pub use spacemouse::{SpaceMouse, SpaceMouseConfig, SpaceMouseMode};
+pub use spacemouse::{SpaceMouse, SpaceMouseConfig, SpaceMouseMode, SpaceMouseMonitor};
 pub use topic::{TopicConfig, TopicDevice, TopicPort, topic_device};

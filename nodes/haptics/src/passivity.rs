@@ -99,7 +99,8 @@ impl Passivity {
         (-self.account).max(0.0) + (-self.remote).max(0.0)
     }
 
-    /// The account, J: `< 0` when the loop has given energy to the hand.
+    /// The account, J: what the hand has put in, less what the coupling holds. `< 0` is owed: it would be given to the hand if it
+    /// were let go of as it is.
     #[must_use]
     pub fn energy(&self) -> f64 {
         if self.owed() > 0.0 { -self.owed() } else { self.account }

@@ -41,7 +41,7 @@ pub(crate) const PLOTS: &[Plot] = &[
     },
     Plot {
         entity: "/series/energy_mJ",
-        title: "Energy account [mJ], below 0: given to the hand",
+        title: "Energy put in by the hand, less stored [mJ]",
         lines: &[("energy [mJ]", palette::SCP)],
         value: |r, out| out.push(r.energy * 1e3),
     },

@@ -1,7 +1,7 @@
 //! The device alone as a node, so that device and servo can live on two machines.
 
 use crate::parameters::{Declared, ParameterServer};
-use crate::servo_node::{Due, apply, declared as servo_parameters, open_local, scene_file};
+use crate::servo_node::{DeviceWatch, Due, apply, declared as servo_parameters, open_local, scene_file};
 use crate::{Failure, Host, Inbox, Listener, Outcome, Talker, qos};
 use bag::msg::{Header, Joy, PoseStamped, TwistStamped, WrenchStamped};
 use device::{HapticDevice, Sample};
@@ -78,6 +78,7 @@ pub struct DeviceNode {
     host: Host,
     parameters: ParameterServer,
     device: Box<dyn HapticDevice>,
+    watch: DeviceWatch,
     frame_id: String,
     pose: Talker<PoseStamped>,
     twist: Talker<TwistStamped>,
@@ -105,7 +106,7 @@ impl DeviceNode {
         let mut config = Config::default();
         apply(&mut config, parameters.values()).map_err(Failure::new)?;
         let scene = Scene::load(&scene_file(&config.scene)?).map_err(|e| Failure::new(e.to_string()))?;
-        let device = open_local(&config, &scene)?;
+        let (device, watch) = open_local(&config, &scene)?;
         let node = &mut host.node;
         Ok(Self {
             pose: Talker::new(node, "~/pose", qos::sensor())?,
@@ -124,6 +125,7 @@ impl DeviceNode {
             last: Sample::default(),
             frame_id: config.frame_id,
             device,
+            watch,
             parameters,
             host,
         })
@@ -215,6 +217,7 @@ impl DeviceNode {
             self.last.buttons = sample.buttons;
         }
         if self.report_due.at(now) {
+            self.watch.tell(&self.host);
             self.diagnostics.publish(&self.report(now, sample))?;
         }
         Ok(())

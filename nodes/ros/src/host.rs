@@ -165,6 +165,10 @@ fn check_arguments(name: &str, usage: &str, args: impl Iterator<Item = String>) 
                 );
                 std::process::exit(0);
             }
+            (false, "-V" | "--version") => {
+                println!("{name} {}", env!("CARGO_PKG_VERSION"));
+                std::process::exit(0);
+            }
             (false, other) => {
                 return Err(Failure::usage(format!(
                     "unknown argument `{other}`; usage: {name} [--ros-args -p NAME:=VALUE --params-file FILE -r FROM:=TO]"

@@ -46,7 +46,8 @@ pub struct TickRecord {
     pub law_wrench: Wrench,
     /// What the device gets: after ramp, coupling damping, passivity and limits.
     pub out_wrench: Wrench,
-    /// Energy account of the passivity observer, J, `< 0` when the loop has given energy to the hand.
+    /// Energy account of the passivity observer, J: what the hand has put in, less what the coupling holds. `< 0` is owed: it
+    /// would be given to the hand if it were let go of as it is.
     pub energy: f64,
     /// Health bits.
     pub health: Health,

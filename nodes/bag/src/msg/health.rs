@@ -40,7 +40,7 @@ pub struct ServoHealth {
     pub compute_p99_ns: u32,
     /// Time spent computing a tick, ns: median, 99th percentile, largest since start.
     pub compute_max_ns: u32,
-    /// Energy account of the passivity observer, J; < 0 when the loop has given energy to the hand.
+    /// Energy account of the passivity observer, J: what the hand has put in, less what the coupling holds; < 0 is owed.
     pub energy: f64,
     /// Penetration of the hand's pose, metres, >= 0, and the norm of the force on the hand, N, >= 0, at the last
     /// tick.

@@ -93,7 +93,7 @@ pub struct TickRecord {
     pub law_wrench: Wrench,
     /// What the device gets, after ramp, coupling damping, passivity and limits; axes and reference point as above.
     pub out_wrench: Wrench,
-    /// Energy account of the passivity observer, J; < 0 when the loop has given energy to the hand.
+    /// Energy account of the passivity observer, J: what the hand has put in, less what the coupling holds; < 0 is owed.
     pub energy: f64,
     /// Health bits of the tick, `HEALTH_*`.
     pub health: u32,

@@ -67,7 +67,10 @@ impl Declared {
             (V::StringArray(_), V::NotSet) => V::StringArray(Vec::new()),
             (V::DoubleArray(_), V::NotSet) => V::DoubleArray(Vec::new()),
             (d, v) if std::mem::discriminant(d) == std::mem::discriminant(v) => v.clone(),
-            (d, v) => return Err(format!("parameter `{}` is a {}, got a {}", self.name, d.type_name(), v.type_name())),
+            (_, V::NotSet) => return Err(format!("parameter `{}` cannot be undeclared: the node needs it", self.name)),
+            (d, v) => {
+                return Err(format!("parameter `{}` is of type {}, got {}", self.name, d.type_name(), v.type_name()));
+            }
         };
         let numbers: Vec<f64> = match &value {
             V::Double(x) => vec![*x],

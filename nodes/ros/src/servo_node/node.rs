@@ -1,7 +1,7 @@
 use super::contact_events::ContactEvents;
 use super::drivers;
 use super::setup::{apply, declared, scene_file};
-use super::{CSpaceView, DeviceLimits, Due, Frames, ServoTopics, TopicLink};
+use super::{CSpaceView, DeviceLimits, DeviceWatch, Due, Frames, ServoTopics, TopicLink};
 use crate::convert::{ServoReport, scene_description, sha256};
 use crate::parameters::ParameterServer;
 use crate::{Failure, Host, Inbox, Listener, Outcome, Talker, qos};
@@ -32,6 +32,7 @@ pub struct ServoNode {
     commands: Commands,
     servo: Servo,
     link: Option<TopicLink>,
+    watch: DeviceWatch,
     limits: DeviceLimits,
     topics: ServoTopics,
     events: ContactEvents,
@@ -80,7 +81,7 @@ impl ServoNode {
         let reset = Inbox::new(node.create_service::<Trigger::Service>("~/reset", QosProfile::services_default())?);
         let remote = Listener::new(node, "~/remote_wrench", qos::sensor())?;
         let trust_stamps = parameters.switch("device.trust_stamps");
-        let (device, link) = drivers::open(node, &config, &scene, trust_stamps)?;
+        let drivers::Opened { device, link, watch } = drivers::open(node, &config, &scene, trust_stamps)?;
         let findings = servo::check_stability(&config, &scene)
             .map_err(|f| Failure::new(format!("stability.check refuses to start: {f}")))?;
         findings.iter().for_each(|f| host.warn(&f.to_string()));
@@ -109,6 +110,7 @@ impl ServoNode {
             commands,
             servo,
             link,
+            watch,
             limits,
             topics,
             contacts,
@@ -233,6 +235,7 @@ impl ServoNode {
     }
 
     fn report(&mut self, now: Stamp, grants: &str) -> Outcome<()> {
+        self.watch.tell(&self.host);
         let report = ServoReport {
             status: self.servo.status.read(),
             last: &self.last,
