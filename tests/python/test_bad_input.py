@@ -59,6 +59,12 @@ class BadInput(unittest.TestCase):
     def test_unknown_law(self):
         self.refused("haptic_servo", "law", "proxy", law="magic")
 
+    @unittest.skipIf(any(Path("/dev").glob("hidraw*")), "a SpaceMouse may be plugged in")
+    def test_a_device_that_is_not_there_is_told(self):
+        for name in "haptic_servo", "haptic_device":
+            with node(name, device__driver="spacemouse") as process:
+                process.wait_for_line("no SpaceMouse is plugged in")
+
     def test_recorder_without_output(self):
         self.refused("haptic_recorder", "output")
 
