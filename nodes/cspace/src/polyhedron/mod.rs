@@ -1,5 +1,6 @@
 mod build;
 mod error;
+mod facets;
 mod plane;
 #[cfg(test)]
 mod tests;
