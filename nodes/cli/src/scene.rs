@@ -43,7 +43,7 @@ fn describe<'a>(list: &str, body: &Body, parts: impl Iterator<Item = &'a Polyhed
     for part in parts {
         pieces += 1;
         faces += part.face_count();
-        vertices += part.vertex_count();
+        vertices += part.corner_ids().count();
     }
     let note = body.note.as_ref().map_or(String::new(), |n| format!(" ({n})"));
     let friction = body.friction.map_or(String::new(), |f| format!(", friction {f}"));

@@ -1,5 +1,6 @@
 use crate::Mesh;
 use crate::hull::hull;
+use cspace::Plane;
 use spatial::DVec3;
 use std::f64::consts::TAU;
 
@@ -19,7 +20,7 @@ pub fn cut_into_convex(solid: &Mesh) -> Option<Vec<Mesh>> {
     }
     let whole = hull(&solid.vertices).ok()?;
     let faces = whole.faces.iter().map(|f| f.iter().map(|&i| whole.vertices[i as usize]).collect()).collect();
-    let fragments = triangles.iter().map(|t| Fragment { plane: Plane::through(t), polygon: t.to_vec() }).collect();
+    let fragments = triangles.iter().map(|t| Fragment { plane: plane_of(t), polygon: t.to_vec() }).collect();
     let mut open = vec![Cell { faces, fragments }];
     let mut inside = Vec::new();
     while let Some(mut cell) = open.pop() {
@@ -39,24 +40,6 @@ pub fn cut_into_convex(solid: &Mesh) -> Option<Vec<Mesh>> {
     let sum: f64 = inside.iter().map(Mesh::volume).sum();
     let volume = solid.volume();
     ((sum - volume).abs() <= 1e-6 * volume).then_some(inside)
-}
-
-/// `normal . p = offset`, unit normal.
-#[derive(Clone, Copy)]
-struct Plane {
-    normal: DVec3,
-    offset: f64,
-}
-
-impl Plane {
-    fn through(t: &[DVec3; 3]) -> Self {
-        let normal = (t[1] - t[0]).cross(t[2] - t[0]).normalize();
-        Self { normal, offset: normal.dot(t[0]) }
-    }
-
-    fn height(&self, p: DVec3) -> f64 {
-        self.normal.dot(p) - self.offset
-    }
 }
 
 /// The part of a face of the solid that lies in a cell.
@@ -82,7 +65,7 @@ impl Cell {
     }
 
     fn spans(&self, plane: &Plane, eps: f64) -> bool {
-        let heights = || self.faces.iter().flatten().map(|p| plane.height(*p));
+        let heights = || self.faces.iter().flatten().map(|p| plane.signed_distance(*p));
         heights().any(|h| h > eps) && heights().any(|h| h < -eps)
     }
 
@@ -105,7 +88,7 @@ impl Cell {
 
     /// The halves above and below the plane.
     fn split(self, plane: Plane, eps: f64) -> [Option<Self>; 2] {
-        let below = Plane { normal: -plane.normal, offset: -plane.offset };
+        let below = Plane { normal: -plane.normal, distance: -plane.distance };
         [self.half(plane, eps), self.half(below, eps)]
     }
 
@@ -138,8 +121,8 @@ enum Side {
 }
 
 fn side(polygon: &[DVec3], plane: &Plane, eps: f64) -> Side {
-    let up = polygon.iter().any(|p| plane.height(*p) > eps);
-    let down = polygon.iter().any(|p| plane.height(*p) < -eps);
+    let up = polygon.iter().any(|p| plane.signed_distance(*p) > eps);
+    let down = polygon.iter().any(|p| plane.signed_distance(*p) < -eps);
     match (up, down) {
         (true, true) => Side::Both,
         (true, false) => Side::Above,
@@ -158,7 +141,7 @@ fn above(polygon: &[DVec3], plane: &Plane, eps: f64) -> Option<Vec<DVec3>> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     for (i, &p) in polygon.iter().enumerate() {
         let q = polygon[(i + 1) % polygon.len()];
-        let (hp, hq) = (plane.height(p), plane.height(q));
+        let (hp, hq) = (plane.signed_distance(p), plane.signed_distance(q));
         if hp >= -eps {
             kept.push(p);
         }
@@ -173,14 +156,14 @@ fn above(polygon: &[DVec3], plane: &Plane, eps: f64) -> Option<Vec<DVec3>> {
 /// both halves get the very same bits.
 fn crossing(p: DVec3, q: DVec3, plane: &Plane) -> DVec3 {
     let (p, q) = if p.to_array() <= q.to_array() { (p, q) } else { (q, p) };
-    let (hp, hq) = (plane.height(p), plane.height(q));
+    let (hp, hq) = (plane.signed_distance(p), plane.signed_distance(q));
     p + (q - p) * (hp / (hp - hq))
 }
 
 /// The face that closes a cut: the corners of the remaining faces that lie in the plane, counter-clockwise seen from below.
 fn cap(faces: &[Vec<DVec3>], plane: &Plane, eps: f64) -> Option<Vec<DVec3>> {
     let mut corners: Vec<DVec3> = Vec::new();
-    for p in faces.iter().flatten().filter(|p| plane.height(**p).abs() <= eps) {
+    for p in faces.iter().flatten().filter(|p| plane.signed_distance(**p).abs() <= eps) {
         if !corners.contains(p) {
             corners.push(*p);
         }
@@ -228,6 +211,11 @@ fn join_neighbours(pieces: &mut Vec<Mesh>, size: f64) {
             None => i += 1,
         }
     }
+}
+
+fn plane_of(t: &[DVec3; 3]) -> Plane {
+    let normal = (t[1] - t[0]).cross(t[2] - t[0]).normalize();
+    Plane { normal, distance: normal.dot(t[0]) }
 }
 
 fn area(t: &[DVec3; 3]) -> f64 {

@@ -2,7 +2,7 @@
 
 use crate::Mesh;
 use crate::mesh::position_bits;
-use cspace::{Polyhedron, PolyhedronError};
+use cspace::{Plane, Polyhedron, PolyhedronError};
 use spatial::{DMat3, DVec3};
 use std::collections::HashMap;
 
@@ -87,19 +87,6 @@ fn last_digit(vertices: &[DVec3]) -> Option<f64> {
     (digits >= LEAST_DIGITS).then(|| 10f64.powi((-decimals).max(leading + 1 - digits)))
 }
 
-/// `normal . p = offset`, unit normal.
-#[derive(Clone, Copy)]
-struct Plane {
-    normal: DVec3,
-    offset: f64,
-}
-
-impl Plane {
-    fn height(&self, p: DVec3) -> f64 {
-        self.normal.dot(p) - self.offset
-    }
-}
-
 /// Which facets of the file make one face, and its plane.
 struct Faces {
     face_of: Vec<usize>,
@@ -126,8 +113,9 @@ impl Faces {
             while !ring.is_empty() {
                 let plane = plane_of(mesh, &members, sum)?;
                 let fits = |g: &usize| {
-                    let flat =
-                        mesh.faces[*g].iter().all(|&v| plane.height(mesh.vertices[v as usize]).abs() <= tolerance);
+                    let flat = mesh.faces[*g]
+                        .iter()
+                        .all(|&v| plane.signed_distance(mesh.vertices[v as usize]).abs() <= tolerance);
                     flat && area(*g).dot(plane.normal) > 0.5 * area(*g).length()
                 };
                 let mut grown = Vec::new();
@@ -143,7 +131,7 @@ impl Faces {
             }
             let plane = plane_of(mesh, &members, sum)?;
             let corners = members.iter().flat_map(|&f| &mesh.faces[f]);
-            if corners.clone().any(|&v| plane.height(mesh.vertices[v as usize]).abs() > tolerance) {
+            if corners.clone().any(|&v| plane.signed_distance(mesh.vertices[v as usize]).abs() > tolerance) {
                 return None;
             }
             planes.push((members.len() > 1 || mesh.faces[seed].len() > 3).then_some(plane));
@@ -191,7 +179,7 @@ fn plane_of(mesh: &Mesh, facets: &[usize], area: DVec3) -> Option<Plane> {
         sum += normal.dot(mesh.vertices[v as usize]);
         n += 1.0;
     }
-    Some(Plane { normal, offset: sum / n })
+    Some(Plane { normal, distance: sum / n })
 }
 
 /// The point nearest to `p` that lies in all planes, or least far from them.
@@ -199,7 +187,9 @@ fn nearest_on_all(p: DVec3, planes: &[Plane]) -> DVec3 {
     let outer = |n: DVec3| DMat3::from_cols(n * n.x, n * n.y, n * n.z);
     // Least squares; what is added to the diagonal leaves alone the directions that no plane asks for.
     let inverse = planes.iter().fold(DMat3::IDENTITY * 1e-9, |sum, plane| sum + outer(plane.normal)).inverse();
-    (0..3).fold(p, |at, _| at + inverse * planes.iter().map(|plane| plane.normal * -plane.height(at)).sum::<DVec3>())
+    (0..3).fold(p, |at, _| {
+        at + inverse * planes.iter().map(|plane| plane.normal * -plane.signed_distance(at)).sum::<DVec3>()
+    })
 }
 
 #[cfg(test)]
