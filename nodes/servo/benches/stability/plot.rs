@@ -1,7 +1,7 @@
 //! docs/pictures/stability.png.
 
 use crate::table::name;
-use crate::{LAWS, Row};
+use crate::{LAWS, PERIODS, Row};
 use epaint_default_fonts::UBUNTU_LIGHT;
 use haptics::LawKind;
 use plotters::prelude::*;
@@ -69,7 +69,10 @@ fn draw_panel(
         .margin(12)
         .x_label_area_size(50)
         .y_label_area_size(95)
-        .build_cartesian_2d((0.2..2.5).log_scale(), range.log_scale())?;
+        .build_cartesian_2d(
+            (0.2..2.5).log_scale().with_key_points(PERIODS.map(|s| s * 1e3).to_vec()),
+            range.log_scale(),
+        )?;
     chart
         .configure_mesh()
         .x_desc("time of a tick, ms")
