@@ -9,14 +9,15 @@ use crate::step_time::StepTime;
 use bag::first_difference;
 use haptics::LawKind;
 use scene::Scene;
-use servo::{Config, Tick, TickRecord};
+use servo::{Config, Health, Tick, TickRecord};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// `replay`: render a motion in a scene.
 ///
-/// Poses are the hand's poses of A in W: no clutch, no scaling. The output has one row a pose; see the README for its columns.
+/// Poses are the hand's poses of A in W: no clutch, no scaling.
 #[derive(clap::Args)]
+#[command(after_help = columns())]
 #[command(group(clap::ArgGroup::new("motion").required(true).args(["poses", "bag"])))]
 pub struct Args {
     /// The scene file; a bag of ticks brings its own.
@@ -86,6 +87,23 @@ impl Law {
             Self::Proxy => LawKind::Proxy,
         }
     }
+}
+
+/// What the output means, for people who ask for help.
+fn columns() -> String {
+    let bits: Vec<String> = Health::NAMES.iter().map(|(bit, name)| format!("{} {name}", bit.0)).collect();
+    format!(
+        "\
+Columns of the output, one row a tick; wrenches act on the hand, in axes of W, torque about A's origin:
+  t                    s
+  depth                m, of the hand's pose in the obstacles, >= 0
+  formation, contacts  free, vertex-face, edge-edge, edge-face or face-face, and the number of contact points
+  scp_x, scp_y, scp_z  m, position of the surface contact pose (of the proxy) in W
+  fx ... tz            N and N.m, the law's own wrench
+  out_fx ... out_tz    N and N.m, what the device gets after ramp, damping, passivity control and limits
+  health               0 is good, else the sum of: {}",
+        bits.join(", ")
+    )
 }
 
 const HEADER: &str = "t,depth,formation,contacts,scp_x,scp_y,scp_z,fx,fy,fz,tx,ty,tz,\

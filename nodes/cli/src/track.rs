@@ -9,13 +9,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// `track`: the nearest C-face of two convex parts along a motion.
-///
-/// The output has one row a pose: `t,distance,type,feature_a,feature_b,nx,ny,nz,formation,contacts,reseeded,divergent`.
-/// `distance` is the signed distance of A's origin to Near's plane in C-space, metres: `> 0` free, `<= 0` contact.
-/// Features count from 0: vertices in the order of the OBJ file, faces after coplanar ones were merged (in the order of
-/// their first face in the file), edges in the order in which those faces, each from its lowest-numbered vertex on, first
-/// run along them.
 #[derive(clap::Args)]
+#[command(after_help = COLUMNS)]
 pub struct Args {
     /// Mesh of the moving part A (OBJ, convex), in its own frame, metres.
     #[arg(long)]
@@ -33,6 +28,20 @@ pub struct Args {
     #[arg(long)]
     pub time: bool,
 }
+
+/// What the output means, for people who ask for help.
+const COLUMNS: &str = "\
+Columns of the output, one row a pose:
+  t                     s, as in the poses
+  distance              m, A's origin to the plane of the nearest C-face (Near): > 0 free, <= 0 contact
+  type                  A: face of A, vertex of B; B: vertex of A, face of B; C: edges
+  feature_a, feature_b  the two, counted from 0: vertices as in the OBJ file; faces after coplanar ones were merged,
+                        in the order of their first face in the file; edges in the order in which those faces, each
+                        from its lowest-numbered vertex on, first run along them
+  nx, ny, nz            the plane's normal, unit, in W, towards freedom
+  formation, contacts   free, vertex-face, edge-edge, edge-face or face-face, and of how many basic contacts
+  reseeded              1 where Near was not reached continuously, as in the first row
+  divergent             1 where the depth is not the least one, or this was not proven";
 
 const HEADER: &str = "t,distance,type,feature_a,feature_b,nx,ny,nz,formation,contacts,reseeded,divergent\n";
 

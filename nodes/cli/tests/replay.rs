@@ -176,6 +176,27 @@ fn bad_input_is_one_line_with_exit_code_1_and_leaves_nothing_behind() {
 }
 
 #[test]
+fn help_tells_every_column_and_health_bit() {
+    let help = |command: &str| String::from_utf8(run(&[command, "--help"]).stdout).unwrap();
+    for name in HEADER.split(',').filter(|n| !["fy", "fz", "tx", "ty"].contains(n) && !n.starts_with("out_")) {
+        assert!(help("replay").contains(name), "{name}");
+    }
+    for (bit, name) in servo::Health::NAMES {
+        assert!(help("replay").contains(&format!("{} {name}", bit.0)), "{name}");
+    }
+    let folder = Folder::new();
+    let (a, out) = (folder.path("a.obj"), folder.path("o.csv"));
+    std::fs::copy(scene().with_file_name("peg.obj"), &a).unwrap();
+    let poses = folder.path("p.csv");
+    let files = [text(&a), text(&a), text(&poses), text(&out)];
+    let args = ["track", "--moving", files[0], "--fixed", files[1], "--poses", files[2], "--out", files[3]];
+    assert!(run(&args).status.success());
+    for name in folder.read("o.csv").lines().next().unwrap().split(',') {
+        assert!(help("track").contains(name), "{name}");
+    }
+}
+
+#[test]
 fn usage_errors_have_exit_code_2() {
     for args in [
         &["replay"][..],
