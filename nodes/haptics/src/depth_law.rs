@@ -68,12 +68,18 @@ impl DepthLaw {
             result.proxy.translation = x0 + shift; // one plane alone: (1)
             result.wrench.force = shift * gains.stiffness; // (2)
             result.energy = 0.5 * gains.stiffness * shift.length_squared();
-            self.contacts(solids, &placed, law, gains, &mut result);
+            // The contacts take place at the SCP: along one plane's normal that changes nothing, across it their arms do.
+            let aside = if self.scp.touches.iter().filter(|t| t.push > 0.0).count() > 1 { shift } else { DVec3::ZERO };
+            let there = placed.shifted(aside);
+            for t in &mut self.scp.touches {
+                t.left = t.plane.distance + t.plane.normal_w.dot(aside);
+            }
+            self.contacts(solids, &there, law, gains, &mut result);
             for i in 0..self.scp.touches.len() {
                 let t = self.scp.touches[i];
                 if t.push > 0.0 {
-                    self.widen(solids, pairs, &placed, law, gains, &t);
-                    result.wrench.torque += self.torque_of(i, t, x0, law, gains);
+                    self.widen(solids, pairs, &there, law, gains, &t);
+                    result.wrench.torque += self.torque_of(i, t, there.x, law, gains);
                 }
             }
         } else {
@@ -98,12 +104,12 @@ impl DepthLaw {
             let pair = solids.pair(t.part, t.piece, placed);
             t.tie *= if was_multiple { 1.5 } else { 1.0 };
             let within = if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
-            let limit = t.plane.distance + within;
+            let (limit, plane) = (t.left + within, t.plane_there());
             t.first = self.points.len();
             // Along Near's normal no contact can be deeper than Near.
             let scope = Scope { reach: limit, near_felt: true, wide: law == LawKind::Blended, along_near: true };
-            if !tied_contacts(&pair, &t.plane, within, &scope, &mut self.points) {
-                self.clipper.region(&pair, &t.plane, &scope, &mut self.points);
+            if !tied_contacts(&pair, &plane, within, &scope, &mut self.points) {
+                self.clipper.region(&pair, &plane, &scope, &mut self.points);
             }
             t.end = self.points.len();
         }
@@ -125,7 +131,7 @@ impl DepthLaw {
                     contact: p.contact,
                     point_w: p.point_w,
                     normal_w: p.normal_w,
-                    distance: p.gap,
+                    distance: p.gap + t.plane.distance - t.left,
                     kind,
                 });
                 result.dropped += u32::from(!kept);
@@ -143,11 +149,11 @@ impl DepthLaw {
                 let (a, b) = (solids.part(t.part as usize), solids.piece(t.piece as usize));
                 let at = contact_point_turned(t.plane.contact, a, b, placed.x, &placed.r);
                 let on_b = match t.plane.contact {
-                    BasicContact::TypeB { .. } => at - t.plane.normal_w * t.plane.distance,
+                    BasicContact::TypeB { .. } => at - t.plane.normal_w * t.left,
                     _ => at,
                 };
                 touches[i].first = self.points.len();
-                push_within(&mut self.points, RegionPoint::of(&t.plane, on_b));
+                push_within(&mut self.points, RegionPoint::of(&t.plane_there(), on_b));
                 touches[i].end = self.points.len();
             }
         }
@@ -160,9 +166,9 @@ impl DepthLaw {
         if law != LawKind::Blended || pairs.len() < 2 {
             return;
         }
-        let reach = t.plane.distance + gains.blend_depth.max(t.tie);
+        let reach = t.left + gains.blend_depth.max(t.tie);
         let scope = Scope { reach, near_felt: false, wide: true, along_near: true };
-        self.clipper.beside(&solids.pair(t.part, t.piece, placed), pairs, &t.plane, &scope, &mut self.beside);
+        self.clipper.beside(&solids.pair(t.part, t.piece, placed), pairs, &t.plane_there(), &scope, &mut self.beside);
     }
 
     /// The torque of the force share that plane `i` carries, over the contacts of all pairs with an equal plane.
@@ -183,7 +189,7 @@ impl DepthLaw {
                 }
                 // (5), (6) and the nearest point know the contact plane only: slide App along n to the level of x0.
                 self.places.push(p.point_w + normal * normal.dot(x0 - p.point_w));
-                let short = p.gap - t.plane.distance;
+                let short = p.gap - t.left;
                 let weight = if law == LawKind::Blended { (1.0 - short / fade).clamp(0.0, 1.0) } else { 1.0 };
                 self.weights.push(weight);
             }

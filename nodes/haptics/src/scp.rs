@@ -40,8 +40,17 @@ pub(crate) struct Touch {
     pub first: usize,
     pub end: usize,
     pub tie: f64,
+    /// Its signed distance where its contacts are looked for, metres.
+    pub left: f64,
     /// Share of the force that the plane carries: shift = sum push_i normal_i, metres.
     pub push: f64,
+}
+
+impl Touch {
+    /// The plane where its contacts are looked for.
+    pub fn plane_there(&self) -> CFace {
+        CFace { distance: self.left, ..self.plane }
+    }
 }
 
 /// A penetrating pair whose nearest plane is a seam, and its nearest felt plane once that has been looked for.
@@ -355,7 +364,16 @@ impl Scp {
     }
 
     fn touch(&mut self, solids: &Solids, part: u32, piece: u32, plane: CFace) {
-        self.touches.push(Touch { part, piece, plane, first: 0, end: 0, tie: tie_of(solids, part), push: 0.0 });
+        self.touches.push(Touch {
+            part,
+            piece,
+            plane,
+            first: 0,
+            end: 0,
+            tie: tie_of(solids, part),
+            left: 0.0,
+            push: 0.0,
+        });
         self.rows.push(row(&plane));
     }
 }

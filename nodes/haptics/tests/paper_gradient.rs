@@ -5,8 +5,8 @@ mod support;
 use cspace::World;
 use haptics::{FormationKind, Gains, LawKind, RenderLaw, Renderer};
 use rand::{RngExt, SeedableRng};
-use spatial::{DVec3, Pose};
-use support::{block, mm, penetration, pose, tetrahedron, world};
+use spatial::{DQuat, DVec3, Pose};
+use support::{block, mm, penetration, pose, random, tetrahedron, world};
 
 fn paper() -> Gains {
     Gains { law: LawKind::Paper, ..Gains::default() }
@@ -111,4 +111,44 @@ fn figure_5_face_on_a_face_by_tracker_and_clipping() {
     types.sort_unstable();
     assert_eq!(types, ['A', 'B', 'C', 'C']);
     assert!(out.wrench.torque.length() > 1e-4 && out.wrench.torque.z.abs() < 1e-12, "{}", out.wrench.torque);
+}
+
+/// Two planes carry the SCP, which lies across each of their normals from the hand: the arms are those there.
+#[test]
+fn between_two_obstacles_the_wrench_is_minus_the_gradient_of_the_energy_told() {
+    // Ridges whose edges, along y and along x, hold a box up on two of its faces.
+    let ridge = |turn: f64, at: DVec3| {
+        let upright = Pose::new(at, DQuat::from_rotation_z(turn));
+        random::placed(&support::wedge(0.3, 40e-3, 60e-3), &upright)
+    };
+    let w = world(block(mm(20.0, 16.0, 12.0)), vec![ridge(0.3, mm(-6.0, 0.0, 0.0)), ridge(1.4, mm(6.0, 0.0, 0.0))]);
+    let mut rng = rand_pcg::Pcg64::seed_from_u64(5);
+    let mut together = 0;
+    for law in [LawKind::Paper, LawKind::Pstar] {
+        let gains = Gains { law, ..Gains::default() };
+        for _ in 0..400 {
+            let mut sample = |s: f64| rng.random_range(-s..s);
+            let p = pose(sample(3.0), sample(3.0), 5.0 + sample(5.0), sample(0.3), 0.7 + sample(0.3), sample(0.5));
+            let told = |p: &Pose| Renderer::new(w.clone()).render(p, &gains, 1e-3);
+            let out = told(&p);
+            let contacts = out.formation.points();
+            if contacts.len() != 2 || contacts[0].piece_b == contacts[1].piece_b {
+                continue;
+            }
+            let h = 1e-6;
+            for k in 0..6 {
+                let axis = [DVec3::X, DVec3::Y, DVec3::Z][k % 3] * h;
+                let moved =
+                    |s: f64| if k < 3 { p.moved(axis * s, DVec3::ZERO) } else { p.moved(DVec3::ZERO, axis * s) };
+                let expected = (told(&moved(-1.0)).energy - told(&moved(1.0)).energy) / (2.0 * h);
+                let part = if k < 3 { out.wrench.force } else { out.wrench.torque };
+                assert!(
+                    (part[k % 3] - expected).abs() < 1e-6 * part.length(),
+                    "{law:?}, {p:?}: {part}, {k}: {expected}"
+                );
+            }
+            together += 1;
+        }
+    }
+    assert!(together > 100, "both ridges should often carry the box: {together}");
 }
