@@ -58,6 +58,15 @@ impl Touch {
 struct Unfelt {
     pair: Sensed,
     plane: Option<Option<CFace>>,
+    /// The plane of some face proves it free where the others lead.
+    parted: bool,
+}
+
+impl Unfelt {
+    /// Whether this felt plane lies so close behind the seam that it is a side of the solid there, and not a far one.
+    fn is_close(&self, plane: &CFace) -> bool {
+        self.pair.near.distance - plane.distance <= -CLOSE * self.pair.near.distance
+    }
 }
 
 /// Finds the SCP: corners by projection, `argmin |p - x0|^2` with p on the free side of one plane per pair.
@@ -219,7 +228,9 @@ impl Scp {
                 self.begin_to_hold(solids, pairs, hip, placed, depth);
                 return depth;
             }
+            let depth = self.depth_of_touches();
             self.hold_wedged(pairs, hip, depth);
+            return depth;
         }
         depth
     }
@@ -288,14 +299,14 @@ impl Scp {
             if solids.of(s, placed).is_felt(&s.near, Covered::Unfelt) {
                 self.touch(solids, s.part, s.piece, s.near);
             } else if s.near.distance < 0.0 {
-                self.unfelt.push(Unfelt { pair: *s, plane: None });
+                self.unfelt.push(Unfelt { pair: *s, plane: None, parted: false });
             }
         }
         if self.unfelt.is_empty() && depth_alone {
             return self.depth_of_touches();
         }
         self.projection.solve(&self.rows);
-        self.add_unfelt(solids, placed);
+        self.add_unfelt(solids, placed, if depth_alone { FAR * deepest } else { f64::INFINITY });
         if !depth_alone {
             self.add_beside(solids, placed);
         }
@@ -309,14 +320,15 @@ impl Scp {
     /// A pair whose nearest plane is a seam needs a felt plane of its own only where the others do not free it anyway: one
     /// plane with `f >= 0` at the SCP, felt or not, proves freedom. Those whose felt plane lies close behind the seam come first,
     /// then those where it lies least behind: the others may then be free rather than pushed out on a far side.
-    fn add_unfelt(&mut self, solids: &Solids, placed: &Placed) {
+    /// But a way of more than `far` metres frees none whose felt plane lies close behind the seam.
+    fn add_unfelt(&mut self, solids: &Solids, placed: &Placed, far: f64) {
         loop {
             let Self { unfelt, hints, projection, pieces, .. } = self;
             let shift = DVec3::from_array(projection.z);
             let freed = |c: &CFace| c.distance + c.normal_w.dot(shift) >= -FREED;
             let mut next = None;
             let mut least = f64::INFINITY;
-            for (k, u) in unfelt.iter_mut().enumerate().filter(|(_, u)| !freed(&u.pair.near)) {
+            for (k, u) in unfelt.iter_mut().enumerate().filter(|(_, u)| !u.parted && !freed(&u.pair.near)) {
                 let pair = solids.of(&u.pair, placed);
                 let hint = &mut hints[pair.part * *pieces + pair.piece];
                 let mut find = || pair.felt_plane(&u.pair.near, Covered::Felt, hint);
@@ -325,19 +337,22 @@ impl Scp {
                 {
                     least = u.pair.near.distance - plane.distance;
                     next = Some((k, plane));
-                    if least <= -CLOSE * u.pair.near.distance {
+                    if u.is_close(&plane) {
                         break;
                     }
                 }
             }
             let Some((k, plane)) = next else { break };
-            let Sensed { part, piece, .. } = unfelt.swap_remove(k).pair;
+            let Sensed { part, piece, .. } = unfelt[k].pair;
             // An equal plane adds nothing to the force, but its contacts belong to the region.
             let again = !freed(&plane);
             // Near may be a joint that the way out runs along; then the plane of any face is proof as well.
-            if again && solids.pair(part, piece, &placed.shifted(shift)).a_face_parts(FREED) {
+            let is_way_out = shift.length_squared() <= far * far || !unfelt[k].is_close(&plane);
+            if again && is_way_out && solids.pair(part, piece, &placed.shifted(shift)).a_face_parts(FREED) {
+                unfelt[k].parted = true;
                 continue;
             }
+            unfelt.swap_remove(k);
             self.touch(solids, part, piece, plane);
             if again {
                 self.projection.solve(&self.rows);

@@ -3,8 +3,8 @@
 mod support;
 
 use haptics::{Gains, LawKind, RenderLaw, Renderer};
-use spatial::DVec3;
-use support::{peg_in_hole, pose};
+use spatial::{DQuat, DVec3, Pose};
+use support::{block, cuboid, mm, peg_in_hole, pose, world};
 
 const LAWS: [LawKind; 3] = [LawKind::Paper, LawKind::Pstar, LawKind::Blended];
 /// The peg's and the hole's half sides, mm.
@@ -77,6 +77,37 @@ fn turned_it_cannot_be_pushed_in_from_above() {
             let force = r.render(&pose(0.02, -0.01, z, 0.0, 0.0, 0.05), &gains(law), 1e-3).wrench.force;
             let lift = (20.0 - z).max(0.0);
             assert!((force - DVec3::Z * lift).length() < 1e-6, "{law:?}, {z} mm: {force}");
+        }
+    }
+}
+
+/// A hole without play, and a peg that is turned by up to 10 mrad in it: wherever the way out leads, the force is shown where it takes
+/// place, and every wall that the peg is in is told.
+#[test]
+fn turned_in_a_hole_without_play_it_feels_every_wall_and_no_lever_longer_than_itself() {
+    let half = 4.5;
+    let walls = vec![
+        cuboid(mm(-30.0, half, -30.0), mm(30.0, 30.0, 0.0)),
+        cuboid(mm(-30.0, -30.0, -30.0), mm(30.0, -half, 0.0)),
+        cuboid(mm(half, -half, -30.0), mm(30.0, half, 0.0)),
+        cuboid(mm(-30.0, -half, -30.0), mm(-half, half, 0.0)),
+    ];
+    let w = world(block(mm(2.0 * half, 2.0 * half, 30.0)), walls);
+    for law in LAWS {
+        let mut r = Renderer::new(w.clone());
+        for i in 0..1200 {
+            let t = f64::from(i);
+            let turn = DVec3::new((t / 90.0).sin(), (t / 110.0).cos(), 0.0) * 0.01;
+            let at = mm(0.1 * (t / 50.0).sin(), 0.1 * (t / 70.0).cos(), 16.5 - 9.0 * t / 1200.0);
+            let hand = Pose::new(at, DQuat::from_scaled_axis(turn));
+            let out = r.render(&hand, &gains(law), 1e-3);
+            let place = format!("{law:?}, tick {i}: {} {} {}", out.wrench.force, out.wrench.torque, out.depth);
+            let pushes = out.wrench.force.length() + 4.0 * out.depth * gains(law).stiffness;
+            assert!(out.wrench.torque.length() <= 17e-3 * pushes, "{place}");
+            // How far the part of the peg that is in the hole reaches into the walls.
+            let corners = w.moving[0].vertices().iter().map(|v| hand.transform_point(*v)).filter(|v| v.z < -1e-3);
+            let aside = corners.map(|v| v.x.abs().max(v.y.abs()) - half * 1e-3).fold(0.0, f64::max);
+            assert!(out.depth >= aside - 1e-9, "{place}, but {aside}");
         }
     }
 }

@@ -53,9 +53,23 @@ impl Scp {
         let found = !self.touches.is_empty() && (least <= near || follows);
         if !found {
             self.take_nearest();
-            self.give_way(near);
+            self.touch_unfelt(solids, &Placed::new(hip));
+            self.give_way(FAR * self.depth_of_touches());
         }
         found
+    }
+
+    /// Takes also the sides of the solid close behind seams that only the way out freed: where there is none they hold the part.
+    fn touch_unfelt(&mut self, solids: &Solids, placed: &Placed) {
+        while let Some(u) = self.unfelt.pop() {
+            let s = u.pair;
+            let hint = &mut self.hints[s.part as usize * self.pieces + s.piece as usize];
+            let plane = u.plane.unwrap_or_else(|| solids.of(&s, placed).felt_plane(&s.near, Covered::Felt, hint));
+            if let Some(plane) = plane.filter(|p| u.is_close(p)) {
+                self.touch(solids, s.part, s.piece, plane);
+                self.nearest.extend(self.touches.last().copied());
+            }
+        }
     }
 
     /// Takes the planes nearest to the hand.
