@@ -298,7 +298,7 @@ impl Scp {
             }
             if solids.of(s, placed).is_felt(&s.near, Covered::Unfelt) {
                 self.touch(solids, s.part, s.piece, s.near);
-            } else if s.near.distance < 0.0 {
+            } else if s.near.distance < 0.0 || !depth_alone {
                 self.unfelt.push(Unfelt { pair: *s, plane: None, parted: false });
             }
         }
