@@ -1,4 +1,5 @@
 use crate::failure::Failure;
+use crate::half_written::HalfWritten;
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -11,6 +12,7 @@ pub struct AtomicFile {
     path: PathBuf,
     place: Place,
     file: BufWriter<tempfile::NamedTempFile>,
+    half: HalfWritten,
 }
 
 enum Place {
@@ -64,7 +66,8 @@ impl AtomicFile {
             .prefix(".cspace-haptics-")
             .tempfile_in(folder)
             .map_err(|e| cannot_write(path, &e))?;
-        Ok(Self { path: path.to_owned(), place, file: BufWriter::with_capacity(1 << 16, file) })
+        let half = HalfWritten::at(file.path());
+        Ok(Self { path: path.to_owned(), place, file: BufWriter::with_capacity(1 << 16, file), half })
     }
 
     /// Adds text.
@@ -80,7 +83,7 @@ impl AtomicFile {
 
     /// Puts the file in its place.
     pub fn finish(self) -> Result<(), Failure> {
-        let Self { path, place, file } = self;
+        let Self { path, place, file, half: _half } = self;
         let bad = |e: io::Error| cannot_write(&path, &e);
         let file = file.into_inner().map_err(|e| bad(e.into_error()))?;
         match place {

@@ -1,4 +1,5 @@
 use crate::failure::Failure;
+use crate::half_written::HalfWritten;
 use bag::BagError;
 use bag::msg::{SceneDescription, ServoConfiguration};
 use scene::Scene;
@@ -11,6 +12,7 @@ pub struct BagOut {
     temporary: tempfile::TempDir,
     name: OsString,
     dir: PathBuf,
+    _half: HalfWritten,
 }
 
 impl BagOut {
@@ -30,6 +32,7 @@ impl BagOut {
         };
         std::fs::create_dir_all(parent).map_err(bad)?;
         let temporary = tempfile::Builder::new().prefix(".cspace-haptics-").tempdir_in(parent).map_err(bad)?;
+        let half = HalfWritten::at(temporary.path());
         let files = scene.bundle.files.iter().map(|(path, data)| (path.clone(), data.clone()));
         let description = SceneDescription::new(&scene.name, &config.frame_id, &scene.bundle.yaml, files);
         let configuration = ServoConfiguration::new(&scene.name, &config.frame_id, &config.to_yaml());
@@ -39,7 +42,7 @@ impl BagOut {
             BagError::Io { source, .. } => bad(source),
             other => Failure::plain(other).known_as(&place, dir),
         })?;
-        Ok(Self { temporary, name, dir: dir.to_owned() })
+        Ok(Self { temporary, name, dir: dir.to_owned(), _half: half })
     }
 
     /// Puts the bag in its place.

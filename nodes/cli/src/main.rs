@@ -8,6 +8,7 @@ mod bag_segment;
 mod bag_summary;
 mod csv_io;
 mod failure;
+mod half_written;
 #[cfg(feature = "inspect")]
 mod inspect;
 mod outputs;
@@ -49,6 +50,7 @@ enum Command {
 fn main() -> ExitCode {
     // Usage errors leave here with exit code 2.
     let cli = Cli::parse();
+    half_written::remove_when_interrupted();
     let result = match cli.command {
         Command::Track(args) => track::run(&args),
         Command::Replay(args) => replay::run(&args),

@@ -155,6 +155,29 @@ fn nothing_that_is_read_and_nothing_else_that_is_written_is_written_over() {
     assert!(run(["--bag", "bag"], &["--out", "bag/again.csv"]).status.success());
 }
 
+/// Interrupted in the midst of a long motion, it leaves nothing behind: neither outputs nor files of other names.
+#[test]
+fn an_interrupted_run_leaves_nothing_half_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    // Long enough to be interrupted.
+    let row = |i: u32| format!("{},0.018,{},0.0148,0,0,0,1\n", f64::from(i) * 1e-3, f64::from(i % 97) * 1e-5);
+    let rows: String = (0..400_000).map(row).collect();
+    std::fs::write(at("p.csv"), format!("t,x,y,z,qx,qy,qz,qw\n{rows}")).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cspace-haptics"));
+    command.args(["replay", "--scene"]).arg(scene()).arg("--poses").arg(at("p.csv"));
+    let mut child = command.arg("--out").arg(at("o.csv")).arg("--bag-out").arg(at("bag")).spawn().unwrap();
+    // The temporary file is there as soon as ticks are rendered.
+    while names(folder.path()).len() < 2 {
+        assert_eq!(child.try_wait().unwrap(), None, "it was over before it could be interrupted");
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    let kill = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    assert_eq!(child.wait().unwrap().code(), Some(128 + 15));
+    assert_eq!(names(folder.path()), ["p.csv"]);
+}
+
 #[test]
 fn a_file_that_is_no_bag_is_told_and_a_damaged_bag_is_looked_into() {
     let folder = tempfile::tempdir().unwrap();

@@ -36,7 +36,7 @@ pub fn draw(rows: &[Row], file: &Path) -> Result<(), Box<dyn Error>> {
         let root = BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area();
         root.fill(&WHITE)?;
         let panels = root.split_evenly((2, 2));
-        let motions = [(MotionKind::Translation, 3e2..2e5), (MotionKind::Rotation, 1.0..4e2)];
+        let motions = [(MotionKind::Translation, 1e2..2e5), (MotionKind::Rotation, 1.0..4e2)];
         for (i, panel) in panels.iter().enumerate() {
             let (motion, range) = motions[i / 2].clone();
             let grip = if i % 2 == 0 { "soft" } else { "stiff" };
