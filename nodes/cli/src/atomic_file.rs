@@ -55,7 +55,7 @@ impl AtomicFile {
             return Err(Failure::file(path, "is a folder, not a file to write"));
         }
         crate::outputs::spare(path, inputs)?;
-        let place = Place::of(path).map_err(|e| cannot_write(path, &e))?;
+        let place = Place::of(path).map_err(|e| Failure::unwritten(path, &e))?;
         let folder = match &place {
             Place::File(file) => {
                 file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
@@ -65,14 +65,14 @@ impl AtomicFile {
         let file = tempfile::Builder::new()
             .prefix(".cspace-haptics-")
             .tempfile_in(folder)
-            .map_err(|e| cannot_write(path, &e))?;
+            .map_err(|e| Failure::unwritten(path, &e))?;
         let half = HalfWritten::at(file.path());
         Ok(Self { path: path.to_owned(), place, file: BufWriter::with_capacity(1 << 16, file), half })
     }
 
     /// Adds text.
     pub fn write(&mut self, text: &str) -> Result<(), Failure> {
-        self.file.write_all(text.as_bytes()).map_err(|e| cannot_write(&self.path, &e))
+        self.file.write_all(text.as_bytes()).map_err(|e| Failure::unwritten(&self.path, &e))
     }
 
     /// The temporary file, for writers that open by name what they write.
@@ -84,7 +84,7 @@ impl AtomicFile {
     /// Puts the file in its place.
     pub fn finish(self) -> Result<(), Failure> {
         let Self { path, place, file, half: _half } = self;
-        let bad = |e: io::Error| cannot_write(&path, &e);
+        let bad = |e: io::Error| Failure::unwritten(&path, &e);
         let file = file.into_inner().map_err(|e| bad(e.into_error()))?;
         match place {
             Place::File(own) => put_in_place(file, &own).map_err(bad),
@@ -116,13 +116,6 @@ fn put_in_place(file: tempfile::NamedTempFile, own: &Path) -> io::Result<()> {
     }
     file.persist(own)?;
     Ok(())
-}
-
-/// The user knows the file by its own name, not by that of the temporary one.
-fn cannot_write(path: &Path, e: &io::Error) -> Failure {
-    let reason = e.to_string();
-    let reason = reason.split(" at path ").next().unwrap_or_default();
-    Failure::file(path, format!("cannot be written: {reason}"))
 }
 
 #[cfg(test)]

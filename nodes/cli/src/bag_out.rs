@@ -26,10 +26,7 @@ impl BagOut {
             Some(p) if !p.as_os_str().is_empty() => p,
             _ => Path::new("."),
         };
-        let bad = |e: std::io::Error| {
-            let reason = e.to_string();
-            Failure::file(dir, format!("cannot be written: {}", reason.split(" at path ").next().unwrap_or_default()))
-        };
+        let bad = |e: std::io::Error| Failure::unwritten(dir, &e);
         std::fs::create_dir_all(parent).map_err(bad)?;
         let temporary = tempfile::Builder::new().prefix(".cspace-haptics-").tempdir_in(parent).map_err(bad)?;
         let half = HalfWritten::at(temporary.path());
@@ -48,6 +45,6 @@ impl BagOut {
     /// Puts the bag in its place.
     pub fn finish(self) -> Result<(), Failure> {
         std::fs::rename(self.temporary.path().join(&self.name), &self.dir)
-            .map_err(|e| Failure::file(&self.dir, format!("cannot be written: {e}")))
+            .map_err(|e| Failure::unwritten(&self.dir, &e))
     }
 }

@@ -1,4 +1,5 @@
 use std::fmt;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Why a command ended with exit code 1: shown as one line, `FILE[:LINE]: reason`.
@@ -19,6 +20,18 @@ impl Failure {
     #[allow(dead_code, reason = "not every feature set reads text files")]
     pub fn line(file: impl AsRef<Path>, line: u64, reason: impl fmt::Display) -> Self {
         Self { line: Some(line), ..Self::file(file, reason) }
+    }
+
+    /// An output that cannot be written. The user knows it by its own name, not by that of the temporary file.
+    pub fn unwritten(file: impl AsRef<Path>, e: &std::io::Error) -> Self {
+        let reason = e.to_string();
+        let hint = match e.kind() {
+            ErrorKind::NotFound => "; make its folder first",
+            ErrorKind::StorageFull => "; free some space",
+            ErrorKind::PermissionDenied => "; choose a folder that you may write to",
+            _ => "",
+        };
+        Self::file(file, format!("cannot be written: {}{hint}", reason.split(" at path ").next().unwrap_or_default()))
     }
 
     /// The same of a file that the user knows as `shown`, not as the temporary one that it was written to.

@@ -204,7 +204,7 @@ fn unreadable_files_are_refused_by_name() {
 #[test]
 fn an_output_that_cannot_be_written_is_named_as_the_user_named_it() {
     let folder = Folder::new();
-    folder.refused("missing/o.csv", "missing/o.csv", "cannot be written");
+    folder.refused("missing/o.csv", "missing/o.csv", "make its folder first");
     std::fs::create_dir(folder.path("folder")).unwrap();
     folder.refused("folder", "folder", "folder");
 }
