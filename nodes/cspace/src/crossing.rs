@@ -19,16 +19,19 @@ pub(crate) struct Crossing {
 }
 
 impl Placed<'_> {
-    /// Whether two edges' Gauss arcs, which crossed a small turn ago, surely cross still; no arc may be so long that
-    /// it could hold the opposite of the crossing as well.
+    /// Whether two edges' Gauss arcs surely cross, whatever the tie break says, in a multiple of `normal`, if B's faces' normals lie
+    /// on both sides of A's edge by `p`: see [`Placed::crossing`].
     #[inline]
-    pub(crate) fn still_cross(&self, edge_a: u32, edge_b: u32) -> bool {
+    pub(crate) fn surely_cross(&self, edge_a: u32, edge_b: u32, p: [f64; 2], normal: DVec3) -> bool {
         let (rod_a, rod_b) = (&self.a.rods[edge_a as usize], &self.b.rods[edge_b as usize]);
-        let (u, v) = (self.turn_to_w(rod_a.dir), self.turn_to_a(rod_b.dir));
-        let p = rod_b.faces.map(|f| self.b.planes[f as usize].0.dot(u));
-        let q = rod_a.faces.map(|f| self.a.planes[f as usize].0.dot(v));
+        let (v, n) = (self.turn_to_a(rod_b.dir), self.turn_to_a(normal));
+        let m = rod_a.faces.map(|f| self.a.planes[f as usize].0);
+        let q = m.map(|m| m.dot(v));
         let least = p[0].abs().min(p[1].abs()).min(q[0].abs()).min(q[1].abs());
-        p[0] * p[1] < 0.0 && q[0] * q[1] < 0.0 && least > 10.0 * TIE_BREAK
+        p[0] * p[1] < 0.0
+            && q[0] * q[1] < 0.0
+            && least > 10.0 * TIE_BREAK
+            && n.dot(m[0]) * q[1].abs() + n.dot(m[1]) * q[0].abs() < 0.0
     }
 
     /// The crossing of the two edges' Gauss arcs, if they cross at this orientation.
@@ -64,7 +67,12 @@ impl Placed<'_> {
 /// if the edges are nearly parallel or A's does not pass between the faces.
 #[inline]
 pub(crate) fn true_normal(n: [DVec3; 2], u: DVec3) -> Option<DVec3> {
-    let p = n.map(|n| n.dot(u));
+    normal_between(n, n.map(|n| n.dot(u)))
+}
+
+/// The same where the normals lie on both sides of A's edge by `p`.
+#[inline]
+pub(crate) fn normal_between(n: [DVec3; 2], p: [f64; 2]) -> Option<DVec3> {
     (p[0] * p[1] < 0.0 && (p[0] - p[1]).abs() > 1e-9).then(|| n[0] * p[1].abs() + n[1] * p[0].abs())
 }
 

@@ -111,7 +111,7 @@ impl Placed<'_> {
         let turn = 1.0 + 1.4 / face.sine;
         // So far that it will not matter before x comes near to a side.
         let inside = -face.outermost();
-        let known = (0.3 * inside / (under * turn)).max(c.steady).min(0.1 * face.sine);
+        let known = (0.3 * inside / (under * turn)).max(c.steady).min(0.03 * face.sine);
         let more = 0.55 * turn * known;
         let least = cosines_a[0].min(cosines_a[1]).min(cosines_b[0].min(cosines_b[1]));
         let tan_half = ((1.0 - least) / (1.0 + least)).max(0.0).sqrt();

@@ -1,6 +1,6 @@
 //! The quick step: Near is known to be applicable; is it still the one?
 
-use crate::crossing::true_normal;
+use crate::crossing::normal_between;
 use crate::parallelogram::{Parallelogram, larger};
 use crate::placed::Placed;
 use crate::{BasicContact, Body, CFace};
@@ -10,9 +10,10 @@ impl Placed<'_> {
     /// The plane of an applicable node, and how far x's projection lies inside of the C-face's sides, metres; none if
     /// a neighbour could have a larger signed distance, or where edges are too nearly parallel to be sure.
     ///
+    /// `crosses`: two edges are known to be applicable; else that is asked as well.
     /// `tan_half`: of two edges, tangent of half the angle that no neighbour's normal lies beyond.
     #[inline]
-    pub(crate) fn stay(&self, node: BasicContact, tan_half: f64) -> Option<(CFace, f64)> {
+    pub(crate) fn stay(&self, node: BasicContact, crosses: bool, tan_half: f64) -> Option<(CFace, f64)> {
         let (normal_w, distance, inside) = match node {
             BasicContact::TypeB { vertex_a, face_b } => {
                 let p = self.point_in_w(self.a.points[vertex_a.index()]);
@@ -27,7 +28,13 @@ impl Placed<'_> {
             BasicContact::TypeC { edge_a, edge_b } => {
                 let (rod_a, rod_b) = (&self.a.rods[edge_a.index()], &self.b.rods[edge_b.index()]);
                 let u = self.turn_to_w(rod_a.dir);
-                let n = true_normal(rod_b.faces.map(|f| self.b.planes[f as usize].0), u)?.normalize();
+                let normals = rod_b.faces.map(|f| self.b.planes[f as usize].0);
+                let p = normals.map(|n| n.dot(u));
+                let n = normal_between(normals, p)?;
+                if !(crosses || self.surely_cross(edge_a.0, edge_b.0, p, n)) {
+                    return None;
+                }
+                let n = n.normalize();
                 let w = self.between_edges(edge_a.0, edge_b.0);
                 let distance = n.dot(w);
                 let face = Parallelogram::new(n, w, (u, rod_a.length), (rod_b.dir, rod_b.length));

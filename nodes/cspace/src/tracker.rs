@@ -101,9 +101,10 @@ impl PairState {
         let chord2 = (at.pose.rotation - self.last.rotation).length_squared();
         // A rival asks for more than a quick step.
         let near_last = travel2 < self.travel2 && self.rival.is_none();
-        let steady = near_last && (chord2 < self.chord2 || chord2 < self.known2 && self.still_holds(&placed));
+        let sure = near_last && chord2 < self.chord2;
+        let steady = sure || near_last && chord2 < self.known2 && self.may_hold(&placed);
         if steady
-            && let Some((near, inside)) = placed.stay(self.near, self.tan_half)
+            && let Some((near, inside)) = placed.stay(self.near, sure, self.tan_half)
             && (near.distance > 0.0 || self.certificate.proves(&placed, &near, inside))
         {
             let distance = near.distance;
@@ -119,12 +120,15 @@ impl PairState {
         self.full_step(&placed, scratch, steady, travel2 + CHORD2 * a.radius * a.radius * chord2)
     }
 
-    /// Whether Near is surely applicable.
+    /// Whether Near is surely applicable; of two edges [`Placed::stay`] tells.
+    #[inline]
+    fn may_hold(&mut self, placed: &Placed<'_>) -> bool {
+        matches!(self.near, BasicContact::TypeC { .. }) || self.still_leads(placed)
+    }
+
+    /// Whether Near, a vertex and a face, is surely applicable.
     #[inline(never)]
-    fn still_holds(&mut self, placed: &Placed<'_>) -> bool {
-        if let BasicContact::TypeC { edge_a, edge_b } = self.near {
-            return placed.still_cross(edge_a.0, edge_b.0);
-        }
+    fn still_leads(&mut self, placed: &Placed<'_>) -> bool {
         let steady = placed.lead(self.near);
         if steady > 0.0 {
             self.stand(placed, steady, f64::INFINITY);
@@ -176,8 +180,7 @@ impl PairState {
         }
         self.near = near.face.contact;
         self.tan_half = near.tan_half;
-        // Where an arc is nearly half a circle, the opposite of a crossing is hard to tell from it.
-        self.stand(placed, near.steady, if near.tan_half < 1.0 { near.known } else { 0.0 });
+        self.stand(placed, near.steady, near.known);
         let distance = near.face.distance;
         Tracked { near: near.face, depth: (-distance).max(0.0), distance, divergent, reseeded, planes }
     }
