@@ -213,6 +213,6 @@ impl DepthLaw {
 
 /// Whether two planes are one constraint.
 fn is_equal(t: &Touch, u: &Touch) -> bool {
-    (u.plane.normal_w - t.plane.normal_w).length() <= EQUAL
+    u.plane.normal_w.distance_squared(t.plane.normal_w) <= EQUAL * EQUAL
         && (u.plane.distance - t.plane.distance).abs() <= EQUAL * t.tie / TIED
 }

@@ -3,6 +3,7 @@
 use crate::face_pair::{Corner, FacePair, PARALLEL_EDGES};
 use crate::facing::facing_point;
 use crate::pair::Pair;
+use crate::seams::Cover;
 use crate::sense::Sensed;
 use crate::span::{Cut, Span};
 use cspace::{BasicContact, CFace, FaceId, Polyhedron, World};
@@ -331,9 +332,10 @@ fn for_each_pair(pair: &Pair<'_>, near: &CFace, mut each: impl FnMut(f64, (FaceI
             (&edge_a_faces, &edge_b_faces)
         }
     };
-    for i in faces_a.iter().filter(|f| !solids.is_internal_a(part, **f)) {
+    let (covers_a, covers_b) = (solids.moving.covers(part), solids.fixed.covers(piece));
+    for i in faces_a.iter().filter(|f| covers_a[f.index()] != Cover::Internal) {
         let normal = placed.r * a.face_plane(*i).normal;
-        for j in faces_b.iter().filter(|f| !solids.is_internal_b(piece, **f)) {
+        for j in faces_b.iter().filter(|f| covers_b[f.index()] != Cover::Internal) {
             each(b.face_plane(*j).normal.dot(normal), (*i, *j));
         }
     }

@@ -188,6 +188,11 @@ impl Seams {
         self.live_edges[piece][edge.index()]
     }
 
+    /// How much of each face of the piece lies inside other pieces.
+    pub fn covers(&self, piece: usize) -> &[Cover] {
+        &self.cover[piece]
+    }
+
     /// How much of the face lies inside other pieces.
     pub fn cover(&self, piece: usize, face: FaceId) -> Cover {
         self.cover[piece][face.index()]

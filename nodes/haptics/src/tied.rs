@@ -158,15 +158,24 @@ fn along_edge(
     if span.is_empty() || !is_apart(&span.enter) || !is_apart(&span.leave) {
         return false;
     }
-    let own = facing_point(pair, near, 0.0);
-    if let Some(point_w) = own {
+    let ends = [(&span.enter, i), (&span.leave, next)].map(|(cut, vertex)| {
+        let corner = if cut.side == Cut::NONE { Corner::OfA(vertex) } else { Corner::Crossing(i, cut.side as usize) };
+        faces.contact(corner, from + (to - from) * cut.line)
+    });
+    // Near's own contact comes first, with the plane that it has; it counts even where the face goes on beyond.
+    let own = ends.iter().position(|p| p.as_ref().is_some_and(|p| p.contact == near.contact));
+    let own_point = match own.and_then(|k| ends[k].as_ref()) {
+        Some(p) => Some(p.point_w),
+        None => facing_point(pair, near, 0.0),
+    };
+    if let Some(point_w) = own_point {
         push_within(out, RegionPoint::of(near, point_w));
     }
-    for (cut, vertex) in [(&span.enter, i), (&span.leave, next)] {
-        let corner = if cut.side == Cut::NONE { Corner::OfA(vertex) } else { Corner::Crossing(i, cut.side as usize) };
-        let found = faces.contact(corner, from + (to - from) * cut.line);
-        if let Some(found) = found.filter(|p| own.is_none() || p.contact != near.contact) {
-            push_within(out, found);
+    for (k, found) in ends.iter().enumerate() {
+        if let Some(found) = found
+            && own != Some(k)
+        {
+            push_within(out, *found);
         }
     }
     true
@@ -174,9 +183,16 @@ fn along_edge(
 
 /// The least slope of the other edges at the ends of one, along `up`.
 fn slope_at_ends(body: &Polyhedron, edge: EdgeId, up: DVec3) -> f64 {
-    let others = |v: &VertexId| body.vertex_edges(*v).iter().filter(|e| **e != edge);
-    let slope = |e: &EdgeId| up.dot(body.edge_direction(*e)).abs();
-    body.edge(edge).vertices.iter().flat_map(others).map(slope).fold(f64::INFINITY, f64::min)
+    let mut least = f64::INFINITY;
+    for vertex in body.edge(edge).vertices {
+        for other in body.vertex_edges(vertex) {
+            let slope = up.dot(body.edge_direction(*other)).abs();
+            if slope < least && *other != edge {
+                least = slope;
+            }
+        }
+    }
+    least
 }
 
 #[cfg(test)]
