@@ -1,7 +1,7 @@
 //! The follower as a node: an example of a teleoperated robot at the end of a network.
 
 use crate::follower::{Follower, Line, MotionLimits, Wall};
-use crate::parameters::{Declared, ParameterServer};
+use crate::parameters::{Declared, ParameterServer, yaml_template};
 use crate::servo_node::Due;
 use crate::{Failure, Host, Listener, Outcome, Talker, qos};
 use bag::msg::{Header, PoseStamped, WrenchStamped};
@@ -179,10 +179,14 @@ impl FollowerNode {
     }
 }
 
+const WHAT: &str = "follows haptic_servo/proxy_pose with limited speed and acceleration, and sends the measured wrench back\n\
+    on ~/wrench (remap it to haptic_servo/remote_wrench).";
+
 /// Starts and runs it.
 ///
 /// # Errors
 /// See [`FollowerNode`].
-pub fn run(usage: &str) -> Result<(), Failure> {
-    FollowerNode::start(Host::start("haptic_follower", usage)?)?.run()
+pub fn run() -> Result<(), Failure> {
+    let parameters = || yaml_template("haptic_follower", &declared());
+    FollowerNode::start(Host::start("haptic_follower", WHAT, parameters)?)?.run()
 }

@@ -24,12 +24,13 @@ pub struct Host {
 
 impl Host {
     /// Starts the middleware with the process's `--ros-args` and makes a node; `name` is what it is called unless
-    /// remapped. `usage` is printed for `--help`, and arguments outside `--ros-args ... [--]` are refused.
+    /// remapped. `--help` is answered with `what` it does and its `parameters` as a file to start from; other arguments outside
+    /// `--ros-args ... [--]` are refused.
     ///
     /// # Errors
     /// Usage, malformed `--ros-args`, an unreadable parameter file, an impossible name or domain.
-    pub fn start(name: &str, usage: &str) -> Outcome<Self> {
-        let mut host = Self::open(name, usage)?;
+    pub fn start(name: &str, what: &str, parameters: fn() -> String) -> Outcome<Self> {
+        let mut host = Self::open(name, what, parameters)?;
         if host.wants_sim_time() {
             let source = host.node.get_time_source();
             source.enable_sim_time(&mut host.node)?;
@@ -42,16 +43,16 @@ impl Host {
     ///
     /// # Errors
     /// As [`Host::start`].
-    pub fn start_in_real_time(name: &str, usage: &str) -> Outcome<Self> {
-        let host = Self::open(name, usage)?;
+    pub fn start_in_real_time(name: &str, what: &str, parameters: fn() -> String) -> Outcome<Self> {
+        let host = Self::open(name, what, parameters)?;
         if host.wants_sim_time() {
             host.warn("use_sim_time is not followed: a hand lives in real time, all stamps are of the system's clock");
         }
         Ok(host)
     }
 
-    fn open(name: &str, usage: &str) -> Outcome<Self> {
-        check_arguments(name, usage, std::env::args().skip(1))?;
+    fn open(name: &str, what: &str, parameters: fn() -> String) -> Outcome<Self> {
+        check_arguments(name, what, parameters, std::env::args().skip(1))?;
         let stop = Arc::new(AtomicBool::new(false));
         for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM, signal_hook::consts::SIGHUP] {
             signal_hook::flag::register(signal, Arc::clone(&stop))
@@ -152,7 +153,12 @@ impl Host {
 }
 
 /// Refuses whatever stands outside `--ros-args ... [--]`.
-fn check_arguments(name: &str, usage: &str, args: impl Iterator<Item = String>) -> Outcome<()> {
+fn check_arguments(
+    name: &str,
+    what: &str,
+    parameters: fn() -> String,
+    args: impl Iterator<Item = String>,
+) -> Outcome<()> {
     let mut inside = false;
     for arg in args {
         match (inside, arg.as_str()) {
@@ -160,9 +166,14 @@ fn check_arguments(name: &str, usage: &str, args: impl Iterator<Item = String>) 
             (true, "--") => inside = false,
             (true, _) => {}
             (false, "-h" | "--help") => {
-                println!(
-                    "{usage}\n\nusage: {name} [--ros-args [-p NAME:=VALUE]... [--params-file FILE]... [-r FROM:=TO]...]"
+                let text = format!(
+                    "{name}: {what}\n\n\
+                    usage: {name} [--ros-args [-p NAME:=VALUE]... [--params-file FILE]... [-r FROM:=TO]...]\n\n\
+                    {}",
+                    parameters()
                 );
+                // A reader that has gone away (`| head`) has seen what it wanted.
+                let _ = std::io::stdout().write_all(text.as_bytes());
                 std::process::exit(0);
             }
             (false, "-V" | "--version") => {
@@ -214,7 +225,7 @@ mod tests {
     use super::*;
 
     fn check(args: &[&str]) -> Outcome<()> {
-        check_arguments("node", "", args.iter().map(|s| (*s).to_owned()))
+        check_arguments("node", "", String::new, args.iter().map(|s| (*s).to_owned()))
     }
 
     #[test]

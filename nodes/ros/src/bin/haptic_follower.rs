@@ -3,9 +3,6 @@
 use cspace_haptics::{failure, follower_node};
 use std::process::ExitCode;
 
-const USAGE: &str = "haptic_follower: follows haptic_servo/proxy_pose with limited speed and acceleration and sends the measured\n\
-    wrench back on ~/wrench (remap it to haptic_servo/remote_wrench).";
-
 fn main() -> ExitCode {
-    failure::run(|| follower_node::run(USAGE))
+    failure::run(follower_node::run)
 }

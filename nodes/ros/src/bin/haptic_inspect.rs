@@ -1,20 +1,20 @@
 //! ROS 2 node `haptic_inspect`: draws a servo's physical space and C-space with rerun, to a file or a running viewer.
 
-use cspace_haptics::parameters::ParameterServer;
+use cspace_haptics::parameters::{ParameterServer, yaml_template};
 use cspace_haptics::pictures::{PictureOptions, Pictures};
 use cspace_haptics::{Host, Outcome, failure, take_what_is_left};
 use std::process::ExitCode;
 use std::time::Duration;
 
-const USAGE: &str = "haptic_inspect: draws a haptic servo's physical space and C-space with rerun.\n\
-    Parameters: output (a .rrd file), viewer (draw in a running viewer), address (its HOST:PORT), servo, scene.";
+const WHAT: &str = "draws a haptic servo's physical space and C-space with rerun.";
 
 fn main() -> ExitCode {
     failure::run(body)
 }
 
 fn body() -> Outcome<()> {
-    let mut host = Host::start("haptic_inspect", USAGE)?;
+    let mut host =
+        Host::start("haptic_inspect", WHAT, || yaml_template("haptic_inspect", &PictureOptions::declared()))?;
     let mut parameters = ParameterServer::new(&mut host.node, PictureOptions::declared())?;
     let namespace = host.node.namespace()?;
     let options = PictureOptions::from_parameters(&parameters, &namespace)?;

@@ -1,20 +1,20 @@
 //! ROS 2 node `haptic_recorder`: records topics into a rosbag2 MCAP folder that survives a kill -9.
 
-use cspace_haptics::parameters::ParameterServer;
+use cspace_haptics::parameters::{ParameterServer, yaml_template};
 use cspace_haptics::recorder::{Recorder, RecorderOptions};
 use cspace_haptics::{Host, Outcome, failure, take_what_is_left};
 use std::process::ExitCode;
 use std::time::Duration;
 
-const USAGE: &str = "haptic_recorder: records topics into a rosbag2 MCAP folder.\n\
-    Parameters: output (a new folder), topics, nodes, all, compression, split_size_mb, split_duration, flush_interval.";
+const WHAT: &str = "records topics into a rosbag2 MCAP folder.";
 
 fn main() -> ExitCode {
     failure::run(body)
 }
 
 fn body() -> Outcome<()> {
-    let mut host = Host::start("haptic_recorder", USAGE)?;
+    let mut host =
+        Host::start("haptic_recorder", WHAT, || yaml_template("haptic_recorder", &RecorderOptions::declared()))?;
     let mut parameters = ParameterServer::new(&mut host.node, RecorderOptions::declared())?;
     let namespace = host.node.namespace()?;
     let mut recorder = Recorder::create(RecorderOptions::from_parameters(&parameters, &namespace)?)?;

@@ -4,9 +4,10 @@ use cspace_haptics::servo_node::ServoNode;
 use cspace_haptics::{Host, failure};
 use std::process::ExitCode;
 
-const USAGE: &str = "haptic_servo: tracks contacts in C-space and renders the force of compliant motion on the hand.\n\
-    Parameters: scene, device.driver, law, gains, limits, ...: see config/haptic_servo.param.yaml.";
+const WHAT: &str = "tracks contacts in C-space and renders the force of compliant motion on the hand.";
 
 fn main() -> ExitCode {
-    failure::run(|| ServoNode::start(Host::start_in_real_time("haptic_servo", USAGE)?)?.run())
+    failure::run(|| {
+        ServoNode::start(Host::start_in_real_time("haptic_servo", WHAT, servo::config::yaml_template)?)?.run()
+    })
 }
