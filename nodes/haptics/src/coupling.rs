@@ -18,7 +18,6 @@ pub struct Coupling {
     last: Option<(DVec3, DVec3)>,
     /// Low-passed rate of stretch, m/s and rad/s.
     rate: (DVec3, DVec3),
-    law: Option<LawKind>,
 }
 
 impl Coupling {
@@ -40,9 +39,8 @@ impl Coupling {
             self.rate = (DVec3::ZERO, DVec3::ZERO);
             return Wrench::ZERO;
         }
-        let changed = self.law.replace(gains.law).is_some_and(|l| l != gains.law);
         // Another law has its proxy elsewhere: that is no motion either, and the hand goes on as it did.
-        let share = if changed { 0.0 } else { low_pass_share(cutoff, dt) };
+        let share = if law.changed { 0.0 } else { low_pass_share(cutoff, dt) };
         self.rate.0 += ((stretch.0 - last.0) / dt - self.rate.0) * share;
         self.rate.1 += ((stretch.1 - last.1) / dt - self.rate.1) * share;
         if self.rate.0.length_squared() < TINY && stretch.0 == last.0 {
@@ -118,5 +116,19 @@ mod tests {
         assert_eq!(c.damping(&jumped, &at(DVec3::ZERO), &Twist::ZERO, &gains, 1e-3, 150.0), Wrench::ZERO);
         let after = c.damping(&output(at(DVec3::Z), 1.0), &at(DVec3::ZERO), &Twist::ZERO, &gains, 1e-3, 150.0);
         assert_eq!(after.force, DVec3::ZERO);
+    }
+
+    #[test]
+    fn another_law_whose_proxy_is_elsewhere_leaves_the_damping_as_it_was() {
+        let gains = Gains { damping: 2.0, ..Default::default() };
+        let mut c = Coupling::default();
+        let mut damp =
+            |law: &LawOutput, d: f64| c.damping(law, &at(DVec3::NEG_Z * d), &Twist::ZERO, &gains, 1e-3, 150.0).force;
+        let mut before = DVec3::ZERO;
+        for i in 0..200 {
+            before = damp(&output(Pose::IDENTITY, 1.0), f64::from(i) * 1e-4);
+        }
+        let moved = LawOutput { changed: true, ..output(at(DVec3::Z * 0.01), 1.0) };
+        assert_eq!(damp(&moved, 200.0 * 1e-4), before);
     }
 }

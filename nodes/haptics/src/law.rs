@@ -18,6 +18,8 @@ pub struct LawOutput {
     pub dropped: u32,
     /// A pair lost its object and was seeded anew, or the pose jumped.
     pub reseeded: bool,
+    /// Another law than in the last tick: the proxy may be elsewhere without any motion.
+    pub changed: bool,
     /// The tracked depth is not the global minimum (the side by which the tool came in is kept).
     pub divergent: bool,
 }
@@ -34,6 +36,7 @@ impl LawOutput {
             formation: ContactFormation::FREE,
             dropped: 0,
             reseeded: false,
+            changed: false,
             divergent: false,
         }
     }

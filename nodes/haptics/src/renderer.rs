@@ -86,17 +86,17 @@ impl RenderLaw for Renderer {
             let depth = self.depth_law.depth(&self.solids, &self.sense.pairs, hip);
             LawOutput {
                 wrench,
-                proxy: self.proxy.pose,
                 depth,
                 energy,
                 formation,
                 dropped,
                 reseeded: seeded && !first && !changed,
-                divergent: false,
+                ..LawOutput::free(self.proxy.pose)
             }
         } else {
             self.depth_law.render(&self.solids, &self.sense.pairs, hip, gains.law, gains)
         };
+        out.changed = changed;
         out.divergent = self.sense.divergent;
         out.reseeded |= self.sense.reseeded && !first;
         if changed {
