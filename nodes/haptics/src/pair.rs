@@ -99,6 +99,14 @@ impl<'a> Pair<'a> {
         })
     }
 
+    /// Whether a plane across `normal_w` has the piece behind it and the part before it but for `slack` metres: proof that the pair
+    /// is free.
+    pub fn is_parted_along(&self, normal_w: DVec3, slack: f64) -> bool {
+        let Self { a, b, placed, .. } = *self;
+        let lowest = placed.point(a.vertex(a.support(-(placed.r.transpose() * normal_w))));
+        normal_w.dot(lowest - b.vertex(b.support(normal_w))) >= -slack
+    }
+
     /// Whether the pair's nearest plane is one of the uncut solids.
     pub fn is_felt(&self, near: &CFace, covered: Covered) -> bool {
         self.solids.is_seamless(self.part, self.piece) || self.is_felt_plane(near, covered)

@@ -323,7 +323,7 @@ impl Scp {
     /// But a way of more than `far` metres frees none whose felt plane lies close behind the seam.
     fn add_unfelt(&mut self, solids: &Solids, placed: &Placed, far: f64) {
         loop {
-            let Self { unfelt, hints, projection, pieces, .. } = self;
+            let Self { touches, unfelt, hints, projection, pieces, .. } = self;
             let shift = DVec3::from_array(projection.z);
             let freed = |c: &CFace| c.distance + c.normal_w.dot(shift) >= -FREED;
             let mut next = None;
@@ -346,9 +346,16 @@ impl Scp {
             let Sensed { part, piece, .. } = unfelt[k].pair;
             // An equal plane adds nothing to the force, but its contacts belong to the region.
             let again = !freed(&plane);
-            // Near may be a joint that the way out runs along; then the plane of any face is proof as well.
+            // Near may be a joint that the way out runs along; then the plane of any face is proof as well, and so is one that holds
+            // the SCP: it has what lies behind a rim behind it.
             let is_way_out = shift.length_squared() <= far * far || !unfelt[k].is_close(&plane);
-            if again && is_way_out && solids.pair(part, piece, &placed.shifted(shift)).a_face_parts(FREED) {
+            let there = placed.shifted(shift);
+            let at_scp = solids.pair(part, piece, &there);
+            let is_parted = || {
+                let mut holding = projection.active().map(|(i, _)| touches[i].plane.normal_w);
+                at_scp.a_face_parts(FREED) || holding.any(|n| at_scp.is_parted_along(n, FREED))
+            };
+            if again && is_way_out && is_parted() {
                 unfelt[k].parted = true;
                 continue;
             }

@@ -139,3 +139,32 @@ fn a_solid_given_twice_feels_like_one_where_the_proxy_passes_an_edge() {
         }
     }
 }
+
+/// A rim with a joint close behind it: where a part leans over the rim, the piece behind lies behind the rim's plane, and is no
+/// farther in the way than that, though its nearest plane is one of the joint.
+#[test]
+fn a_joint_close_behind_a_rim_is_not_felt_over_it() {
+    let box_of = |x: [f64; 2]| cuboid(DVec3::new(x[0], -50.0, -20.0) * 1e-3, DVec3::new(x[1], 50.0, 0.0) * 1e-3);
+    for seed in 1..=3 * SEEDS {
+        let mut rng = rng(seed);
+        let mut corner = || DVec3::from_array([0; 3].map(|_| rng.random_range(-1.0..1.0))).normalize() * 0.015;
+        let part = hull(&(0..16).map(|_| corner()).collect::<Vec<_>>());
+        let joint = rng.random_range(0.1..2.0);
+        let mut hands = motion(&mut rng, part.vertices(), false, false);
+        // To and fro over the rim.
+        for (hand, s) in hands.iter_mut().zip(0..) {
+            hand.translation.x = 8e-3 * (f64::from(s) * 0.05).sin();
+        }
+        let whole = world(vec![part.clone()], vec![box_of([0.0, 50.0])]);
+        let cut = world(vec![part], vec![box_of([joint, 50.0]), box_of([0.0, joint + 5.0])]);
+        let gains = Gains { law: LawKind::Paper, ..Gains::default() };
+        let (mut a, mut b) = (Renderer::new(whole), Renderer::new(cut));
+        for (tick, hand) in hands.iter().enumerate() {
+            let (expected, found) = (a.render(hand, &gains, 1e-3), b.render(hand, &gains, 1e-3));
+            let apart = (found.wrench.force - expected.wrench.force).length();
+            let at = format!("seed {seed}, joint {joint} mm, tick {tick}");
+            assert!(apart < 1e-6, "{at}: {:?}, not {:?}", found.wrench, expected.wrench);
+            assert!((found.depth - expected.depth).abs() < 1e-9, "{at}: {} deep, not {}", found.depth, expected.depth);
+        }
+    }
+}
