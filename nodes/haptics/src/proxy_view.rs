@@ -372,3 +372,41 @@ impl View {
         (formation, dropped)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::cuboid;
+    use cspace::{FixedPart, World};
+    use spatial::DQuat;
+    use std::sync::Arc;
+
+    /// A pair that is listed by its region and by its hollow ends made the list grow, on the servo thread.
+    #[test]
+    fn there_is_room_for_pairs_that_are_listed_twice() {
+        // Two walls of a square hole; the part's upright edge goes about the corner of its rim, tilted.
+        let wall = |x: [f64; 2], y: [f64; 2]| FixedPart {
+            polyhedron: Arc::new(cuboid(DVec3::new(x[0], y[0], -0.02), DVec3::new(x[1], y[1], 0.0))),
+            obstacle: 0,
+        };
+        let world = World {
+            moving: vec![Arc::new(cuboid(DVec3::splat(-0.006), DVec3::splat(0.006)))],
+            fixed: vec![wall([0.01, 0.03], [-0.03, 0.03]), wall([-0.03, 0.01], [0.01, 0.03])],
+        };
+        let pairs = world.fixed.len();
+        let solids = Solids::new(Arc::new(world));
+        let mut view = View::new(&solids);
+        let room = view.pairs.capacity();
+        let mut most = 0;
+        for i in 0..20_000u32 {
+            let wave = |k: f64| (f64::from(i) * k).sin();
+            let turn = DQuat::from_rotation_y(0.5 * wave(0.011)) * DQuat::from_rotation_x(0.5 * wave(0.0137));
+            let on_edge = turn * DVec3::new(0.006, 0.006, 0.005 * wave(0.0071));
+            let beside = DVec3::new(wave(0.31), wave(0.37), wave(0.47)) * 2e-4;
+            view.look(&solids, &Pose::new(DVec3::new(0.01, 0.01, 0.0) + beside - on_edge, turn), view.reach);
+            most = most.max(view.pairs.len());
+        }
+        assert!(most > pairs, "no pair was listed twice: the test shows nothing");
+        assert_eq!(view.pairs.capacity(), room);
+    }
+}
