@@ -17,14 +17,17 @@ const LEAST: f64 = 1e-8;
 const MOST: f64 = 1e-4;
 const MOST_OF_CONVEX: f64 = 1e-6;
 
-/// The polyhedron of a mesh, its faces made plane as far as the digits of the coordinates leave that open and it is not
-/// convex without that. Vertices and faces count as in the mesh.
+/// The polyhedron of a mesh. Where it is not convex as it stands, its faces are made plane as far as the digits of the
+/// coordinates leave that open, without the slivers that they have made lines of. Vertices and faces count as in the mesh.
 ///
 /// # Errors
 /// The mesh is not convex, however the digits are read.
 pub fn polyhedron(mesh: &Mesh) -> Result<Polyhedron, PolyhedronError> {
     let whole = |m: &Mesh| Polyhedron::from_faces(&m.vertices, &m.faces);
-    whole(mesh).or_else(|refused| flattened(mesh, MOST).and_then(|m| whole(&m).ok()).ok_or(refused))
+    whole(mesh).or_else(|refused| {
+        let sound = mesh.without_collapsed_faces();
+        whole(&sound).or_else(|_| flattened(&sound, MOST).and_then(|m| whole(&m).ok()).ok_or(refused))
+    })
 }
 
 /// The mesh with faces made plane where the digits of its coordinates have bent them: dented ones would be cut into slivers,
@@ -253,6 +256,18 @@ mod tests {
             assert_eq!(faces(&flattened(&nine, MOST).unwrap()), Some(count));
         }
         assert!(refused >= 4, "only {refused} were refused as written: the test shows nothing");
+    }
+
+    #[test]
+    fn slivers_that_have_collapsed_are_passed_over() {
+        let mut brick = triangles(&[(0.0, 0.0), (0.05, 0.0), (0.05, 0.04), (0.0, 0.04)], 0.03);
+        brick.faces.insert(3, vec![1, 2, 2]);
+        assert_eq!(faces(&brick), None);
+        assert_eq!(polyhedron(&brick).map(|p| p.face_count()), Ok(6));
+        let bent = written(&brick, decimals(6));
+        assert_eq!(polyhedron(&bent).map(|p| p.face_count()), Ok(6));
+        brick.faces.remove(0);
+        assert!(polyhedron(&brick).is_err());
     }
 
     #[test]

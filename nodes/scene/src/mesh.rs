@@ -1,5 +1,5 @@
 use spatial::{DVec3, Pose};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A surface as a file has it: polygons over shared vertices, counter-clockwise seen from outside. Not yet known to be
 /// closed, planar or convex.
@@ -71,6 +71,17 @@ impl Mesh {
             }
         }
         welded
+    }
+
+    /// The mesh without faces whose corners lie at fewer than three places: digits that are too few make such of slivers. A
+    /// closed surface stays closed without them.
+    #[must_use]
+    pub fn without_collapsed_faces(&self) -> Self {
+        let places = |face: &Vec<u32>| {
+            face.iter().map(|&i| position_bits(self.vertices[i as usize])).collect::<HashSet<_>>().len()
+        };
+        let faces = self.faces.iter().filter(|face| places(face) >= 3).cloned().collect();
+        Self { vertices: self.vertices.clone(), faces }
     }
 
     /// The pieces of the surface that share no vertex, each as a mesh of its own, in the order of their first face.
