@@ -123,7 +123,8 @@ fn along_edge(
     out: &mut Vec<RegionPoint>,
 ) -> bool {
     let Pair { a, placed, .. } = *pair;
-    let clear = (2.0 * within / slope_at_ends(a, edge, up)).max(own_tolerance(pair));
+    let Some(slope) = slope_at_ends(a, edge, up, within) else { return false };
+    let clear = (2.0 * within / slope).max(own_tolerance(pair));
     if scope.wide || !(clear < a.size()) {
         return false;
     }
@@ -137,11 +138,21 @@ fn along_edge(
     let (foot, along) = (faces.foot(from), faces.foot(to) - faces.foot(from));
     let sides = faces.sides_b();
     let mut span = Span::WHOLE;
+    let mut close = [0; 2];
     for (j, side) in sides.iter().enumerate() {
         let p = side.signed_distance(foot);
         let q = p + side.normal.dot(along);
-        if p.abs() <= clear || q.abs() <= clear {
-            return false;
+        let (near_from, near_to) = (p.abs() <= clear, q.abs() <= clear);
+        if near_from || near_to {
+            // What else of A's face comes to this side there?
+            let before = if i == 0 { ring.len() - 1 } else { i - 1 };
+            let after = if next + 1 == ring.len() { 0 } else { next + 1 };
+            let (k, end, s, beside) = if near_from { (0, from, p, ring[before]) } else { (1, to, q, ring[after]) };
+            close[k] += 1;
+            let is_sure = near_from != near_to && close[k] == 1 && !(p > 0.0 && q > 0.0);
+            if !is_sure || !passes(&faces, side, (end, s), placed.point(a.vertex(beside)), within) {
+                return false;
+            }
         }
         if p > 0.0 && q > 0.0 {
             return true;
@@ -166,7 +177,7 @@ fn along_edge(
     let own = ends.iter().position(|p| p.as_ref().is_some_and(|p| p.contact == near.contact));
     let own_point = match own.and_then(|k| ends[k].as_ref()) {
         Some(p) => Some(p.point_w),
-        None => facing_point(pair, near, 0.0),
+        None => facing_point(pair, near, own_tolerance(pair)),
     };
     if let Some(point_w) = own_point {
         push_within(out, RegionPoint::of(near, point_w));
@@ -181,18 +192,35 @@ fn along_edge(
     true
 }
 
-/// The least slope of the other edges at the ends of one, along `up`.
-fn slope_at_ends(body: &Polyhedron, edge: EdgeId, up: DVec3) -> f64 {
+/// Whether the edge of A's face from `end`, which lies beyond a side of B's by `s` metres, to `beside` rises out of reach before it comes
+/// to that side, if it does.
+fn passes(faces: &FacePair<'_>, side: &Plane, (end, s): (DVec3, f64), beside: DVec3, within: f64) -> bool {
+    let (from, to) = (faces.height(end), faces.height(beside));
+    let r = side.signed_distance(faces.foot(beside));
+    let out_of_reach = faces.highest + 0.01 * within;
+    let comes = (r > 0.0) != (s > 0.0);
+    to > out_of_reach
+        && s.abs() > own_tolerance(&faces.pair) * 1e-2
+        && !(comes && from + (to - from) * (s / (s - r)) <= out_of_reach)
+}
+
+/// The least slope of the other edges at the ends of one, along `up`; none if one of them leads to a vertex within reach.
+fn slope_at_ends(body: &Polyhedron, edge: EdgeId, up: DVec3, within: f64) -> Option<f64> {
+    let ends = body.edge(edge).vertices;
+    let [from, to] = ends.map(|v| up.dot(body.vertex(v)));
+    let reach = from.min(to) + 2.0 * within;
     let mut least = f64::INFINITY;
-    for vertex in body.edge(edge).vertices {
-        for other in body.vertex_edges(vertex) {
-            let slope = up.dot(body.edge_direction(*other)).abs();
-            if slope < least && *other != edge {
-                least = slope;
+    for vertex in ends {
+        for (other, neighbor) in body.vertex_edges(vertex).iter().zip(body.vertex_vertices(vertex)) {
+            if *other != edge {
+                if up.dot(body.vertex(*neighbor)) <= reach {
+                    return None;
+                }
+                least = least.min(up.dot(body.edge_direction(*other)).abs());
             }
         }
     }
-    least
+    Some(least)
 }
 
 #[cfg(test)]
@@ -232,9 +260,9 @@ mod tests {
         let (mut sense, mut clipper) = (Sense::new(solids.world.clone(), 0.005), Clipper::for_world(&solids.world));
         let mut rng = rand_pcg::Pcg64::seed_from_u64(5);
         let (mut quick, mut clipped) = (Vec::with_capacity(64), Vec::with_capacity(64));
-        let mut settled = [0; 3];
+        let mut settled = [0; 4];
         let mut left = 0;
-        for _ in 0..20_000 {
+        for _ in 0..30_000 {
             // Upright, or on an edge, and turned from there by very little about some axes.
             let mut small = || if rng.random_bool(0.4) { 0.0 } else { 10.0_f64.powf(rng.random_range(-9.0..-1.5)) };
             let tilt = DQuat::from_scaled_axis(DVec3::new(small(), -small(), small()));
@@ -242,10 +270,20 @@ mod tests {
             let axis = [DVec3::X, DVec3::Y, DVec3::Z][rng.random_range(0..3)];
             let rotation = (tilt * DQuat::from_axis_angle(axis, quarter)).normalize();
             let turned = |v: DVec3| rotation * v;
-            let lowest =
-                solids.world.moving.iter().flat_map(|p| p.vertices()).map(|v| turned(*v).z).fold(0.0, f64::min);
-            let x = rng.random_range(-0.02..0.02);
-            let pose = Pose::new(DVec3::new(x, rng.random_range(-0.02..0.02), -lowest - 1e-4), rotation);
+            let extent = |axis: fn(DVec3) -> f64| {
+                let all = solids.world.moving.iter().flat_map(|p| p.vertices()).map(|v| axis(turned(*v)));
+                all.fold(0.0, f64::max)
+            };
+            let (down, ahead) = (extent(|v| -v.z), extent(|v| v.x));
+            // Into the floor, and anywhere, or into the wall as well, or only so far that both are just touched.
+            let mut little = || 10.0_f64.powf(rng.random_range(-11.0..-4.0));
+            let (into_floor, into_wall) = (little(), little());
+            let (x, z) = match rng.random_range(0..3) {
+                0 => (rng.random_range(-0.02..0.02), down - 1e-4),
+                1 => (0.012 - ahead + into_wall, down - 1e-4),
+                _ => (0.012 - ahead + into_wall, down - into_floor),
+            };
+            let pose = Pose::new(DVec3::new(x, rng.random_range(-0.02..0.02), z), rotation);
             sense.reset();
             sense.step(&pose);
             let placed = Placed::new(&pose);
@@ -279,7 +317,7 @@ mod tests {
             }
         }
         assert!(
-            settled.iter().all(|n| *n > 1000),
+            settled[..3].iter().all(|n| *n > 1000),
             "nothing, one and two contacts {settled:?}, left to clipping {left}"
         );
     }
