@@ -13,8 +13,9 @@ pub fn hull(points: &[DVec3]) -> Result<Mesh, String> {
     if mesh.volume() > 1e-12 * size.powi(3) { Ok(mesh) } else { Err("no convex hull: the points are coplanar".into()) }
 }
 
-/// Convex pieces that together come near to the solid: an approximation, for what cannot be cut exactly.
-pub fn approximate(solid: &Mesh) -> Vec<Mesh> {
+/// Convex pieces that together come near to the solid: an approximation, for what cannot be cut exactly. `None` if there
+/// are none, as of a surface that crosses itself.
+pub fn approximate(solid: &Mesh) -> Option<Vec<Mesh>> {
     let triangles: Vec<[u32; 3]> =
         solid.faces.iter().flat_map(|f| (1..f.len() - 1).map(|i| [f[0], f[i], f[i + 1]])).collect();
     let parameters = VHACDParameters {
@@ -24,9 +25,20 @@ pub fn approximate(solid: &Mesh) -> Vec<Mesh> {
         fill_mode: FillMode::FloodFill { detect_cavities: true },
         ..Default::default()
     };
-    VHACD::decompose(&parameters, &solid.vertices, &triangles, true)
-        .compute_exact_convex_hulls(&solid.vertices, &triangles)
-        .iter()
-        .filter_map(|(vertices, _)| hull(vertices).ok())
-        .collect()
+    let parts = quietly(|| {
+        VHACD::decompose(&parameters, &solid.vertices, &triangles, true)
+            .compute_exact_convex_hulls(&solid.vertices, &triangles)
+    })?;
+    let pieces: Vec<Mesh> = parts.iter().filter_map(|(vertices, _)| hull(vertices).ok()).collect();
+    (!pieces.is_empty()).then_some(pieces)
+}
+
+/// `None` where `work` panics, as the decomposition does where it finds no hull of a part. What it says then is for its
+/// makers; what others say meanwhile is lost, which is little while a scene is read.
+fn quietly<T>(work: impl FnOnce() -> T) -> Option<T> {
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| {}));
+    let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(work));
+    std::panic::set_hook(hook);
+    outcome.ok()
 }

@@ -49,16 +49,17 @@ fn solid(mesh: &Mesh, refused: PolyhedronError) -> Result<(Vec<Polyhedron>, Opti
     let bodies = mesh.components();
     let solids = if bodies.iter().all(|b| b.volume() > 0.0) { bodies } else { vec![mesh.clone()] };
     let (mut pieces, mut exact) = (Vec::new(), true);
+    // A piece's own complaint would speak of faces that the file does not have.
+    let either =
+        || MeshError::whole(format!("{refused}; it cannot be cut into convex pieces either: try `convex: hull`"));
     for solid in &solids {
-        let meshes = cut_into_convex(solid).unwrap_or_else(|| {
+        let meshes = cut_into_convex(solid).or_else(|| {
             exact = false;
             approximate(solid)
         });
-        for piece in &meshes {
+        for piece in &meshes.ok_or_else(either)? {
             let convex = polyhedron(piece).or_else(|_| polyhedron(&hull(&piece.vertices).map_err(MeshError::whole)?));
-            // A piece's own complaint would speak of faces that the file does not have.
-            let either = || format!("{refused}; it cannot be cut into convex pieces either: try `convex: hull`");
-            pieces.push(convex.map_err(|_| MeshError::whole(either()))?);
+            pieces.push(convex.map_err(|_| either())?);
         }
     }
     if pieces.is_empty() {

@@ -118,3 +118,13 @@ fn no_garbage_makes_it_panic() {
         }
     }
 }
+
+/// A brick whose corners were rounded onto each other's sides: the decomposition finds no hull of a part, and panicked.
+#[test]
+fn a_surface_that_crosses_itself_is_refused_in_the_files_words() {
+    let corners = "v -1 -1 0\nv -1 0 0\nv 0 -1 1\nv 0 0 -1\nv 0 0 1\nv 0 1 1\nv 1 0 0\nv 1 1 0\n";
+    let faces =
+        "f 1 2 4\nf 1 4 3\nf 5 7 8\nf 5 8 6\nf 1 5 6\nf 1 6 2\nf 3 4 8\nf 3 8 7\nf 1 3 7\nf 1 7 5\nf 2 6 8\nf 2 8 4\n";
+    let refused = refusal(GOOD.as_bytes(), format!("{corners}{faces}").as_bytes(), "a.obj");
+    assert!(refused.reason.contains("it cannot be cut into convex pieces"), "{refused}");
+}
