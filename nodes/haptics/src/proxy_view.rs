@@ -24,8 +24,10 @@ const BESIDE: f64 = 1e-6;
 const TIE: f64 = 1e-9;
 /// A motion within which no C-face ties is known no farther than this, metres.
 const UNTIED: f64 = 1e-3;
-/// Planes of pairs whose normals (radians) and signed distances (metres) differ by no more than this are one wall's.
-const ONE_PLANE: f64 = 1e-9;
+/// Planes of pairs whose signed distances (metres) and normals (radians) differ by no more than these are one wall's: files of
+/// single precision hold pieces no closer together.
+const ONE_PLANE: f64 = 1e-7;
+const ONE_NORMAL: f64 = 1e-5;
 /// Most planes of pairs that are replaced together.
 const TOGETHER: usize = 8;
 /// Bounds of the reach, metres.
@@ -58,7 +60,7 @@ pub(crate) struct Replaced {
 
 /// Whether two planes are one wall's.
 fn is_one_plane(c: &CFace, d: &CFace) -> bool {
-    (c.distance - d.distance).abs() <= ONE_PLANE && c.normal_w.distance_squared(d.normal_w) <= ONE_PLANE * ONE_PLANE
+    (c.distance - d.distance).abs() <= ONE_PLANE && c.normal_w.distance_squared(d.normal_w) <= ONE_NORMAL * ONE_NORMAL
 }
 
 /// A plane that no other ties with while the proxy stays near a pose: within `room` (metres) and `turn` (radians).
@@ -249,14 +251,26 @@ impl View {
 
     /// The plane of another C-face that meets the `k`-th pair's at the proxy, which is at `pose`.
     pub fn tied_plane(&mut self, solids: &Solids, k: usize, pose: &Pose, placed: &Placed) -> Option<CFace> {
+        self.plane_tied_within(TIE, solids, k, pose, placed)
+    }
+
+    /// The same of planes whose signed distances are within `tie` metres of nought.
+    fn plane_tied_within(
+        &mut self,
+        tie: f64,
+        solids: &Solids,
+        k: usize,
+        pose: &Pose,
+        placed: &Placed,
+    ) -> Option<CFace> {
         let pair = &self.pairs[k];
         let untied = &mut self.untied[pair.part as usize * self.pieces + pair.piece as usize];
-        let touches = (-PENETRATION..=TIE).contains(&pair.plane.distance);
-        if !touches || untied.is_some_and(|u| u.holds(pair.plane.contact, pose, self.lever)) {
+        let touches = (-PENETRATION.max(tie)..=tie).contains(&pair.plane.distance);
+        if !touches || tie <= TIE && untied.is_some_and(|u| u.holds(pair.plane.contact, pose, self.lever)) {
             return None;
         }
         let (contact, bodies) = (pair.plane.contact, solids.pair(pair.part, pair.piece, placed));
-        let (tied, room) = bodies.tied_plane(&pair.plane, TIE, UNTIED);
+        let (tied, room) = bodies.tied_plane(&pair.plane, tie, UNTIED);
         let turn = TURN / (1.0 + bodies.leverage(contact));
         *untied = (room > 0.0).then_some(Untied { contact, at: *pose, room, turn });
         tied
@@ -272,7 +286,7 @@ impl View {
         for _ in 0..self.pairs.len() - 1 {
             let pair = self.pairs[i];
             let same_wall = replaced.count < TOGETHER && is_one_plane(&pair.plane, &wall);
-            let tied = same_wall.then(|| self.tied_plane(solids, i, pose, placed)).flatten();
+            let tied = same_wall.then(|| self.plane_tied_within(ONE_PLANE, solids, i, pose, placed)).flatten();
             let Some(tied) = tied.filter(|tied| is_one_plane(tied, plane)) else {
                 i += 1;
                 continue;

@@ -122,20 +122,31 @@ fn a_solid_given_twice_feels_like_one_where_the_proxy_passes_an_edge() {
     let ring = |half: f64, z: f64| {
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x * half, y * half, z) * 1e-3)
     };
-    let block = || hull(&[ring(40.0, -30.0), ring(40.0, -10.0), ring(20.0, 0.0)].concat());
+    let corners = [ring(40.0, -30.0), ring(40.0, -10.0), ring(20.0, 0.0)].concat();
+    // As a file of single precision holds it the second time, in a frame half a metre away.
+    let away = DVec3::new(0.5, 0.6, 0.7);
+    let rounded: Vec<DVec3> = corners.iter().map(|c| (*c + away).as_vec3().as_dvec3() - away).collect();
     for seed in 1..=SEEDS {
         let mut rng = rng(seed);
         let mut corner = || DVec3::from_array([0; 3].map(|_| rng.random_range(-1.0..1.0))).normalize() * 0.01;
         let part = hull(&(0..8).map(|_| corner()).collect::<Vec<_>>());
         let hands = motion(&mut rng, part.vertices(), false, false);
-        let (once, twice) = (world(vec![part.clone()], vec![block()]), world(vec![part], vec![block(), block()]));
+        let once = world(vec![part.clone()], vec![hull(&corners)]);
+        let second = if seed % 2 == 0 { &corners } else { &rounded };
+        let twice = world(vec![part], vec![hull(&corners), hull(second)]);
         let gains = Gains { law: LawKind::Proxy, ..Gains::default() };
         let (mut a, mut b) = (Renderer::new(once), Renderer::new(twice));
+        let mut apart = 0;
         for (tick, hand) in hands.iter().enumerate() {
             let (expected, found) = (a.render(hand, &gains, 1e-3).wrench, b.render(hand, &gains, 1e-3).wrench);
+            let is_exact = seed % 2 == 0;
+            // One newton a millimetre.
+            let most = if is_exact { 1e-6 } else { 2e-4 };
             let same =
-                (found.force - expected.force).length() < 1e-6 && (found.torque - expected.torque).length() < 1e-6;
-            assert!(same, "seed {seed}, tick {tick}: {found:?}, not {expected:?}");
+                (found.force - expected.force).length() < most && (found.torque - expected.torque).length() < most;
+            apart = if same { 0 } else { apart + 1 };
+            // Rounding may decide in which of two ticks the edge is passed.
+            assert!(apart <= usize::from(!is_exact), "seed {seed}, tick {tick}: {found:?}, not {expected:?}");
         }
     }
 }
