@@ -99,8 +99,8 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// Whether a plane across `normal_w` has the piece behind it and the part before it but for `slack` metres: proof that the pair
-    /// is free.
+    /// Whether a plane across `normal_w` has the piece behind it and the part before it but for `slack` metres, which may be
+    /// negative: proof that the pair is free.
     pub fn is_parted_along(&self, normal_w: DVec3, slack: f64) -> bool {
         let Self { a, b, placed, .. } = *self;
         let lowest = placed.point(a.vertex(a.support(-(placed.r.transpose() * normal_w))));

@@ -4,7 +4,7 @@ mod hold;
 mod refine;
 
 use crate::facing::facing_point;
-use crate::pair::{Covered, SAME};
+use crate::pair::{Covered, Pair, SAME};
 use crate::placed::Placed;
 use crate::projection::{Projection, Row};
 use crate::renderer::SCP_MARGIN;
@@ -351,11 +351,7 @@ impl Scp {
             let is_way_out = shift.length_squared() <= far * far || !unfelt[k].is_close(&plane);
             let there = placed.shifted(shift);
             let at_scp = solids.pair(part, piece, &there);
-            let is_parted = || {
-                let mut holding = projection.active().map(|(i, _)| touches[i].plane.normal_w);
-                at_scp.a_face_parts(FREED) || holding.any(|n| at_scp.is_parted_along(n, FREED))
-            };
-            if again && is_way_out && is_parted() {
+            if again && is_way_out && is_parted(&at_scp, touches, projection) {
                 unfelt[k].parted = true;
                 continue;
             }
@@ -398,6 +394,14 @@ impl Scp {
         });
         self.rows.push(row(&plane));
     }
+}
+
+/// Whether the pair is proven free where the part is, by the plane of any face, or apart by one that holds the part there. What
+/// only touches that one is a contact of the same wall.
+fn is_parted(pair: &Pair<'_>, touches: &[Touch], projection: &Projection<3>) -> bool {
+    let mut holding = projection.active().map(|(i, _)| touches[i].plane.normal_w);
+    let apart = 4.0 * tie_of(pair.solids, pair.part as u32);
+    pair.a_face_parts(FREED) || holding.any(|n| pair.is_parted_along(n, -apart))
 }
 
 fn row(plane: &CFace) -> Row<3> {

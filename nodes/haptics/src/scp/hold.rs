@@ -1,6 +1,6 @@
 //! From tick to tick the same planes hold the SCP nearly always: then there is nothing to search.
 
-use super::{FAR, FREED, Scp, Touch, row, tie_of};
+use super::{FAR, FREED, Scp, Touch, is_parted, row, tie_of};
 use crate::pair::{Covered, SAME};
 use crate::placed::Placed;
 use crate::projection::Projection;
@@ -128,11 +128,16 @@ impl Scp {
         if !(depth > 0.0) || shift.length_squared() > SCP_MARGIN.min(FAR * depth).powi(2) {
             return None;
         }
+        let there = placed.shifted(shift);
         let is_apart = |s: &Sensed| {
             let left = s.near.distance + s.near.normal_w.dot(shift);
-            left > 4.0 * tie_of(solids, s.part) || self.touches.iter().any(|t| is_of(t, s))
+            left > 4.0 * tie_of(solids, s.part)
+                || self.touches.iter().any(|t| is_of(t, s))
+                || left < -FREED
+                    && !solids.of(s, placed).is_felt(&s.near, Covered::Unfelt)
+                    && is_parted(&solids.of(s, &there), &self.touches, &self.projection)
         };
-        if !pairs.iter().all(is_apart) || !self.takes_place(solids, &placed.shifted(shift)) {
+        if !pairs.iter().all(is_apart) || !self.takes_place(solids, &there) {
             return None;
         }
         self.held = Some(held);
@@ -171,7 +176,10 @@ impl Scp {
                 return None;
             }
             let there = placed.shifted(DVec3::from_array(self.projection.z));
-            if !others.all(|s| is_freed(&s.near, &self.projection) || solids.of(s, &there).a_face_parts(FREED)) {
+            let is_free = |s: &Sensed| {
+                is_freed(&s.near, &self.projection) || is_parted(&solids.of(s, &there), &self.touches, &self.projection)
+            };
+            if !others.all(is_free) {
                 return None;
             }
         }
