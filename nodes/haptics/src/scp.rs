@@ -67,6 +67,16 @@ impl Unfelt {
     fn is_close(&self, plane: &CFace) -> bool {
         self.pair.near.distance - plane.distance <= -CLOSE * self.pair.near.distance
     }
+
+    /// The pair's nearest felt plane, which is looked for once.
+    fn felt_plane(&mut self, solids: &Solids, placed: &Placed, hints: &mut [Option<BasicContact>]) -> Option<CFace> {
+        let near = &self.pair.near;
+        *self.plane.get_or_insert_with(|| {
+            let pair = solids.of(&self.pair, placed);
+            let hint = &mut hints[pair.part * solids.world.fixed.len() + pair.piece];
+            pair.felt_plane(near, Covered::Felt, hint)
+        })
+    }
 }
 
 /// Finds the SCP: corners by projection, `argmin |p - x0|^2` with p on the free side of one plane per pair.
@@ -218,20 +228,20 @@ impl Scp {
     /// From the planes near the hand to the SCP and the planes that hold it.
     fn search(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
         let depth = self.project(solids, pairs, placed, false);
-        if depth > 0.0 {
-            self.choose(solids, placed, depth);
-            self.take_projection();
-            self.wedged = !self.is_plain(solids, placed, depth) && !self.refine(solids, hip, depth);
-            if !self.wedged {
-                // Either planes may lie deeper than the pairs do: a far one beside a seam, or one that frees a pair at the SCP.
-                let depth = depth.min(self.depth_of_touches());
-                self.begin_to_hold(solids, pairs, hip, placed, depth);
-                return depth;
-            }
+        if depth <= 0.0 {
+            return depth;
+        }
+        self.choose(solids, placed, depth);
+        self.take_projection();
+        self.wedged = !self.is_plain(solids, placed, depth) && !self.refine(solids, hip, depth);
+        if self.wedged {
             let depth = self.depth_of_touches();
             self.hold_wedged(pairs, hip, depth);
             return depth;
         }
+        // Either planes may lie deeper than the pairs do: a far one beside a seam, or one that frees a pair at the SCP.
+        let depth = depth.min(self.depth_of_touches());
+        self.begin_to_hold(solids, pairs, hip, placed, depth);
         depth
     }
 
@@ -323,16 +333,13 @@ impl Scp {
     /// But a way of more than `far` metres frees none whose felt plane lies close behind the seam.
     fn add_unfelt(&mut self, solids: &Solids, placed: &Placed, far: f64) {
         loop {
-            let Self { touches, unfelt, hints, projection, pieces, .. } = self;
+            let Self { touches, unfelt, hints, projection, .. } = self;
             let shift = DVec3::from_array(projection.z);
             let freed = |c: &CFace| c.distance + c.normal_w.dot(shift) >= -FREED;
             let mut next = None;
             let mut least = f64::INFINITY;
             for (k, u) in unfelt.iter_mut().enumerate().filter(|(_, u)| !u.parted && !freed(&u.pair.near)) {
-                let pair = solids.of(&u.pair, placed);
-                let hint = &mut hints[pair.part * *pieces + pair.piece];
-                let mut find = || pair.felt_plane(&u.pair.near, Covered::Felt, hint);
-                if let Some(plane) = *u.plane.get_or_insert_with(&mut find)
+                if let Some(plane) = u.felt_plane(solids, placed, hints)
                     && u.pair.near.distance - plane.distance < least
                 {
                     least = u.pair.near.distance - plane.distance;
@@ -371,9 +378,7 @@ impl Scp {
             let touches =
                 |c: &CFace| (-FREED..=4.0 * tie_of(solids, part)).contains(&(c.distance + c.normal_w.dot(shift)));
             if touches(&near) {
-                let pair = solids.pair(part, piece, placed);
-                let hint = &mut self.hints[pair.part * self.pieces + pair.piece];
-                let plane = pair.felt_plane(&near, Covered::Felt, hint);
+                let plane = self.unfelt[k].felt_plane(solids, placed, &mut self.hints);
                 if let Some(plane) = plane.filter(touches) {
                     self.touch(solids, part, piece, plane);
                 }

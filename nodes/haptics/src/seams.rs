@@ -158,8 +158,7 @@ impl Seams {
     fn find_sides(&self, piece: usize) -> Vec<Vec<Cover>> {
         let p = &self.pieces[piece];
         let of_side = |face: FaceId, side: usize| {
-            let ring = p.face_vertices(face);
-            let (a, b) = (p.vertex(ring[side]), p.vertex(ring[(side + 1) % ring.len()]));
+            let [a, b] = side_ends(p, face, side);
             let on = SAMPLES.iter().filter(|s| self.side_goes_on(piece, face, side, a.lerp(b, **s), -FALL)).count();
             match on {
                 0 => Cover::Open,
@@ -173,8 +172,7 @@ impl Seams {
     fn find_hollow(&self, piece: usize) -> Vec<bool> {
         let p = &self.pieces[piece];
         let rises = |face: FaceId, side: usize| {
-            let ring = p.face_vertices(face);
-            let (a, b) = (p.vertex(ring[side]), p.vertex(ring[(side + 1) % ring.len()]));
+            let [a, b] = side_ends(p, face, side);
             SAMPLES.iter().map(|s| a.lerp(b, *s)).any(|at| {
                 let rises = |rise| self.side_goes_on(piece, face, side, at, rise);
                 rises(FALL) && !rises(STEEP)
@@ -244,10 +242,9 @@ impl Seams {
     /// Whether the surface goes on beyond the side at `point` and rises by `rise` radians or more there, which may be negative.
     fn side_goes_on(&self, piece: usize, face: FaceId, side: usize, point: DVec3, rise: f64) -> bool {
         let p = &self.pieces[piece];
-        let ring = p.face_vertices(face);
         let normal = p.face_plane(face).normal;
-        let along = p.vertex(ring[(side + 1) % ring.len()]) - p.vertex(ring[side]);
-        let outward = along.cross(normal).normalize_or_zero();
+        let [from, to] = side_ends(p, face, side);
+        let outward = (to - from).cross(normal).normalize_or_zero();
         // Bevels are shallow, so what lies beyond is told by the planes that meet at the point, not by a point farther on.
         let beyond = outward + normal * rise;
         let here = 8.0 * self.tolerance;
@@ -346,6 +343,12 @@ fn cover_of<'a>(
     }
 }
 
+/// Where the side of a face begins and ends.
+fn side_ends(p: &Polyhedron, face: FaceId, side: usize) -> [DVec3; 2] {
+    let ring = p.face_vertices(face);
+    [side, (side + 1) % ring.len()].map(|k| p.vertex(ring[k]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -407,7 +410,8 @@ mod tests {
             let top = p.faces().find(|f| p.face_plane(*f).normal.z > 0.999).unwrap();
             let ring = p.face_vertices(top);
             for side in 0..ring.len() {
-                let middle = p.vertex(ring[side]).lerp(p.vertex(ring[(side + 1) % ring.len()]), 0.4);
+                let [from, to] = side_ends(p, top, side);
+                let middle = from.lerp(to, 0.4);
                 let joint = middle.x.abs() < 0.3 && middle.y.abs() < 0.4;
                 assert_eq!(seams.goes_on(piece, top, side, middle), joint, "piece {piece}, {middle}");
                 ends += usize::from(!joint);

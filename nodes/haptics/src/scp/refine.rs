@@ -61,12 +61,10 @@ impl Scp {
 
     /// Takes also the sides of the solid close behind seams that only the way out freed: where there is none they hold the part.
     fn touch_unfelt(&mut self, solids: &Solids, placed: &Placed) {
-        while let Some(u) = self.unfelt.pop() {
-            let s = u.pair;
-            let hint = &mut self.hints[s.part as usize * self.pieces + s.piece as usize];
-            let plane = u.plane.unwrap_or_else(|| solids.of(&s, placed).felt_plane(&s.near, Covered::Felt, hint));
+        while let Some(mut u) = self.unfelt.pop() {
+            let plane = u.felt_plane(solids, placed, &mut self.hints);
             if let Some(plane) = plane.filter(|p| u.is_close(p)) {
-                self.touch(solids, s.part, s.piece, plane);
+                self.touch(solids, u.pair.part, u.pair.piece, plane);
                 self.nearest.extend(self.touches.last().copied());
             }
         }
