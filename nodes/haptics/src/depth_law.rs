@@ -204,7 +204,7 @@ impl DepthLaw {
             }
         }
         if law == LawKind::Blended {
-            self.shares.spread(&self.places, &mut self.weights, &mut self.order);
+            self.shares.spread(&self.places, normal, &mut self.weights, &mut self.order);
         }
         let p = nearest_point(&self.places, &self.weights, &mut self.order, x0);
         force.cross(x0 - p)

@@ -1,31 +1,39 @@
-//! How contacts that crowd together share one contact's weight.
+//! How the contacts of a region share what weight they have.
 
 use spatial::DVec3;
 
 /// Contacts closer together than this part of the region's extent share their weight.
 const CROWDED: f64 = 0.1;
+/// A contact at which the region's border turns by less than this, radians, counts by that part.
+const CORNER: f64 = 0.2;
+/// Contacts closer together than this part of the extent are one.
+const SAME_PLACE: f64 = 1e-9;
 
 /// Scratch of [`Shares::spread`].
 #[derive(Clone, Debug)]
 pub(crate) struct Shares {
-    crowd: Vec<f64>,
+    /// The corners of the convex hull, counter-clockwise about the normal, as indices of contacts.
+    ring: Vec<u16>,
+    /// How much of a corner each of them is, 0 to 1.
+    corner: Vec<f64>,
     capacity: Vec<f64>,
 }
 
 impl Shares {
     pub fn new(room: usize) -> Self {
-        Self { crowd: Vec::with_capacity(room), capacity: Vec::with_capacity(room) }
+        Self { ring: Vec::with_capacity(room), corner: Vec::with_capacity(room), capacity: Vec::with_capacity(room) }
     }
 
-    /// Turns the weights (0 to 1) of the contacts at `points` into capacities that do not depend on into how many contacts one
-    /// place is cut: a corner that slides over the border of the other face becomes two crossings of edges, and no
-    /// weight may come of that.
+    /// Turns the weights (0 to 1) of the contacts at `points`, in one plane with this normal, into capacities that do not depend on
+    /// into how many contacts one region is cut: a corner that slides over the border of the other face becomes two crossings of
+    /// edges, a flat face that is given as two facets has crossings along its diagonal, and no weight may come of that.
     ///
-    /// Contacts at one place share what the heaviest of them weighs; from a tenth of the region's extent on each keeps its own.
-    /// Layer by layer: of the weights between `s` and `s + ds` contact k gets `ds / sum_j near(k, j)` over the contacts
-    /// that weigh more than `s`, where `near` falls linearly from 1 to 0. A lone heaviest contact of weight 1 keeps it, and the
-    /// total stays at least the largest weight. `order` is scratch of at least the same length.
-    pub fn spread(&mut self, points: &[DVec3], weights: &mut [f64], order: &mut [u16]) {
+    /// Layer by layer: of the weights between `s` and `s + ds` go to contact k, of those that weigh more than `s`, `ds corner(k) /
+    /// max(1, sum_j near(k, j) corner(j))`. Here `corner` is the angle by which the border of their convex hull turns at the
+    /// contact, from nought (within the hull, or on a side) to 1 for [`CORNER`] and more, and `near` falls linearly from 1 to 0 at
+    /// a tenth of the hull's extent. A lone heaviest contact of weight 1 keeps it, and the total stays at least the largest weight.
+    /// `order` is scratch of at least the same length.
+    pub fn spread(&mut self, points: &[DVec3], normal: DVec3, weights: &mut [f64], order: &mut [u16]) {
         let n = points.len();
         let order = &mut order[..n];
         let mut count = 0;
@@ -42,35 +50,102 @@ impl Shares {
             }
         }
         let order = &order[..count];
-        let mut extent = 0.0_f64;
-        for (i, k) in order.iter().enumerate() {
-            for m in &order[..i] {
-                extent = extent.max(points[*k as usize].distance_squared(points[*m as usize]));
-            }
-        }
-        let reach = CROWDED * extent.sqrt();
-        if reach <= 0.0 {
-            return;
-        }
-        self.crowd.clear();
+        self.ring.clear();
         self.capacity.clear();
         self.capacity.resize(n, 0.0);
+        let from_first = |k: &u16| points[*k as usize].distance(points[order[0] as usize]);
+        let same = SAME_PLACE * order.iter().map(from_first).fold(0.0, f64::max);
         for (i, k) in order.iter().enumerate() {
-            let mut own = 1.0;
-            for (crowd, m) in self.crowd.iter_mut().zip(order) {
-                let near = (1.0 - points[*k as usize].distance(points[*m as usize]) / reach).max(0.0);
-                *crowd += near;
-                own += near;
+            if self.ring.iter().all(|m| points[*m as usize].distance(points[*k as usize]) > same) {
+                self.widen(points, normal, *k);
             }
-            self.crowd.push(own);
             let lighter = order.get(i + 1).map_or(0.0, |m| weights[*m as usize]);
             let layer = weights[*k as usize] - lighter;
-            for (crowd, m) in self.crowd.iter().zip(order) {
-                self.capacity[*m as usize] += layer / crowd;
+            if layer > 0.0 {
+                self.share_out(points, normal, layer);
             }
+        }
+        // Rounding alone lets a hull of corners that lie in one place turn by less than it must.
+        if let Some(heaviest) = order.first().map(|k| *k as usize) {
+            let total: f64 = self.capacity.iter().sum();
+            self.capacity[heaviest] += (weights[heaviest] - total).max(0.0);
         }
         weights.copy_from_slice(&self.capacity);
     }
+
+    /// Takes one more contact into the hull.
+    fn widen(&mut self, points: &[DVec3], normal: DVec3, k: u16) {
+        let ring = &mut self.ring;
+        let at = |i: u16| points[i as usize];
+        let p = at(k);
+        match ring.as_slice() {
+            [] => ring.push(k),
+            [_] => ring.push(k),
+            [q, r] if is_on_line(normal, [at(*q), at(*r)], p) => {
+                let (along, way) = (at(*r) - at(*q), p - at(*q));
+                if way.dot(along) < 0.0 {
+                    ring[0] = k;
+                } else if way.dot(along) > along.length_squared() {
+                    ring[1] = k;
+                }
+            }
+            _ => {
+                let n = ring.len();
+                let next = |i: usize| if i + 1 == n { 0 } else { i + 1 };
+                let sees = |i: usize| {
+                    let (from, to) = (at(ring[i]), at(ring[next(i)]));
+                    normal.dot((to - from).cross(p - from)) < 0.0
+                };
+                let Some(seen) = (0..n).find(|i| sees(*i) && !sees(if *i == 0 { n - 1 } else { *i - 1 })) else {
+                    return;
+                };
+                // The corners between the sides that it sees make room for it.
+                ring.rotate_left(seen);
+                let sees = |i: usize| {
+                    let (from, to) = (at(ring[i]), at(ring[next(i)]));
+                    normal.dot((to - from).cross(p - from)) < 0.0
+                };
+                let last = (1..n).take_while(|i| sees(*i)).last().unwrap_or(0);
+                ring.drain(1..=last);
+                ring.insert(1, k);
+            }
+        }
+    }
+
+    /// Gives each corner of the hull its part of a layer.
+    fn share_out(&mut self, points: &[DVec3], normal: DVec3, layer: f64) {
+        let Self { ring, corner, capacity } = self;
+        let n = ring.len();
+        let at = |i: usize| points[ring[i] as usize];
+        corner.clear();
+        let mut extent = 0.0_f64;
+        for i in 0..n {
+            let [before, here, after] = [at((i + n - 1) % n), at(i), at((i + 1) % n)];
+            corner.push(if n > 2 { corner_of(here - before, after - here, normal) } else { 1.0 });
+            extent = (0..i).map(|j| at(j).distance_squared(here)).fold(extent, f64::max);
+        }
+        let reach = CROWDED * extent.sqrt();
+        for i in 0..n {
+            let beside = |j: usize| {
+                let way = at(i).distance(at(j));
+                if way < reach { corner[j] * (1.0 - way / reach) } else { 0.0 }
+            };
+            let crowd: f64 = corner[i] + (0..n).filter(|j| *j != i).map(beside).sum::<f64>();
+            capacity[ring[i] as usize] += layer * corner[i] / crowd.max(1.0);
+        }
+    }
+}
+
+/// Whether three places lie on one line but for rounding.
+fn is_on_line(normal: DVec3, [from, to]: [DVec3; 2], p: DVec3) -> bool {
+    let (along, way) = (to - from, p - from);
+    normal.dot(along.cross(way)).abs() <= 1e-9 * along.length_squared().max(way.length_squared())
+}
+
+/// By how much a border that comes along `before` and goes on along `after` turns to the left, as a part of [`CORNER`], at most 1.
+fn corner_of(before: DVec3, after: DVec3, normal: DVec3) -> f64 {
+    let (along, across) = (before.dot(after), normal.dot(before.cross(after)));
+    if across <= along { ((across / along).atan() / CORNER).clamp(0.0, 1.0) } else { 1.0 }
 }
 
 #[cfg(test)]
@@ -79,7 +154,7 @@ mod tests {
 
     fn spread(points: &[DVec3], weights: &[f64]) -> Vec<f64> {
         let mut w = weights.to_vec();
-        Shares::new(16).spread(points, &mut w, &mut [0; 16]);
+        Shares::new(16).spread(points, DVec3::Z, &mut w, &mut [0; 16]);
         w
     }
 
@@ -103,9 +178,26 @@ mod tests {
     }
 
     #[test]
+    fn what_lies_within_the_hull_of_the_heavier_or_on_its_border_weighs_nothing() {
+        let square = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+        let within = [DVec3::new(0.5, 0.5, 0.0), DVec3::new(0.5, 0.0, 0.0), DVec3::new(1.0, 0.3, 0.0)];
+        let found = spread(&[&square[..], &within].concat(), &[1.0, 0.8, 0.7, 0.6, 0.5, 0.5, 0.5]);
+        assert!(found[4..].iter().all(|w| *w < 1e-12), "{found:?}");
+        assert!(found.iter().zip([1.0, 0.8, 0.7, 0.6]).all(|(w, own)| (w - own).abs() < 1e-12), "{found:?}");
+        // On a side it comes to weigh little by little, as it moves out.
+        let out =
+            |by: f64| spread(&[&square[..], &[DVec3::new(0.5, -by, 0.0)]].concat(), &[1.0, 1.0, 1.0, 1.0, 0.5])[4];
+        assert!(out(1e-9) < 1e-7 && (out(0.01) - 0.5 * 0.2).abs() < 1e-3 && out(0.1) == 0.5, "{}", out(0.01));
+        // Contacts along a line: its ends.
+        let line = [2.0, 1.0, 0.0, -1.0, 3.0].map(|x| DVec3::X * x);
+        assert_eq!(spread(&line, &[1.0, 0.9, 0.8, 0.7, 0.4])[4], 0.4);
+    }
+
+    #[test]
     fn a_crowd_never_weighs_less_than_its_heaviest() {
         for n in 2..12_u32 {
-            let points: Vec<DVec3> = (0..n).map(|i| DVec3::X * (f64::from(i * i) / 50.0)).collect();
+            let place = |i: u32| DVec3::new(f64::from(i * i) / 50.0, f64::from((i * 5) % n) * 0.1, 0.0);
+            let points: Vec<DVec3> = (0..n).map(place).collect();
             let weights: Vec<f64> = (0..n).map(|i| 1.0 / f64::from(1 + (i * 7) % n)).collect();
             let total: f64 = spread(&points, &weights).iter().sum();
             assert!(total >= 1.0 - 1e-12 && total <= weights.iter().sum::<f64>() + 1e-12, "{n}: {total}");
