@@ -1,17 +1,13 @@
 //! All laws behind one interface.
 
-use crate::depth_law::DepthLaw;
-use crate::friction::{Coefficients, Friction};
-use crate::proxy::Proxy;
-use crate::sense::Sense;
-use crate::solid::Solids;
+use crate::depth::{DepthLaw, SCP_MARGIN};
+use crate::proxy::{Coefficients, Friction, Proxy};
+use crate::solid::{Sense, Solids};
 use crate::{Gains, LawKind, LawOutput, RenderLaw};
 use cspace::World;
 use spatial::{Pose, Wrench};
 use std::sync::Arc;
 
-/// Pairs this close to the hand may bound the SCP, metres.
-pub(crate) const SCP_MARGIN: f64 = 5e-3;
 /// Time over which the wrench passes from one law to another, s.
 const CROSSFADE: f64 = 0.05;
 

@@ -1,7 +1,6 @@
 //! What the wheels of ROS 2 need after installation before C++, CMake and Rust can build on them. All of it may be
 //! repeated without harm.
 
-use super::pypi::site_packages;
 use super::python::Python;
 use crate::progress::Step;
 use crate::workspace::files_below;
@@ -20,7 +19,7 @@ pub fn apply(prefix: &Path, python: &Python, step: &Step) -> Result<()> {
     step.detail("linking the middleware");
     link_middleware(prefix)?;
     step.detail("search paths of libraries");
-    libraries(prefix, &site_packages(prefix, python))?;
+    libraries(prefix, &python.site_packages(prefix))?;
     step.detail("paths in CMake files");
     cmake_paths(prefix, python)
 }
@@ -121,7 +120,7 @@ fn cmake_paths(prefix: &Path, python: &Python) -> Result<()> {
         (format!("{made_with}/include/python{}", python.version), python.include.display().to_string()),
         (
             format!("{made_with}/lib/python{}/site-packages", python.version),
-            site_packages(prefix, python).display().to_string(),
+            python.site_packages(prefix).display().to_string(),
         ),
     ];
     for file in files_below(&prefix.join("share"))?.iter().filter(|path| path.extension().is_some_and(|e| e == "cmake"))

@@ -25,7 +25,7 @@ pub fn bring(cache: &Path) -> Result<Ros> {
     variables.set("ROS_DISTRO", "jazzy");
     variables.set("AMENT_PREFIX_PATH", prefix.display());
     variables.set("CMAKE_PREFIX_PATH", prefix.display());
-    variables.set("PYTHONPATH", site_packages(&prefix, &python).display());
+    variables.set("PYTHONPATH", python.site_packages(&prefix).display());
     variables.prepend("LD_LIBRARY_PATH", &prefix.join("lib"));
     variables.prepend("PATH", &prefix.join("bin"));
     Ok(Ros { identity: format!("jazzy {key}"), variables })
@@ -43,11 +43,6 @@ pub fn bring_python_tools() -> Result<PathBuf> {
 fn key(python: &Python, parts: &[&[u8]]) -> String {
     let executable = python.executable.display().to_string();
     workspace::digest(parts.iter().copied().chain([python.version.as_bytes(), executable.as_bytes()]))
-}
-
-/// The folder of pure and binary modules of a virtual environment.
-pub fn site_packages(prefix: &Path, python: &Python) -> PathBuf {
-    prefix.join(format!("lib/python{}/site-packages", python.version))
 }
 
 fn make_venv(

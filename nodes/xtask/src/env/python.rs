@@ -2,7 +2,7 @@
 
 use super::system;
 use anyhow::{Result, bail};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// An interpreter that the wheels exist for.
@@ -14,6 +14,13 @@ pub struct Python {
     pub version: String,
     /// The folder of `Python.h`.
     pub include: PathBuf,
+}
+
+impl Python {
+    /// The folder of pure and binary modules of a virtual environment at `prefix`.
+    pub fn site_packages(&self, prefix: &Path) -> PathBuf {
+        prefix.join(format!("lib/python{}/site-packages", self.version))
+    }
 }
 
 const NAMES: [&str; 5] = ["python3", "python3.13", "python3.12", "python3.11", "python3.10"];

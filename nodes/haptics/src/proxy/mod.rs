@@ -3,14 +3,23 @@
 //! After Zilles and Salisbury 1995 and Ortega, Redon and Coquillart 2007. The constraints are the basic contacts of the
 //! contact regions in reach, not all C-faces: those are alternatives, and together they would forbid free poses.
 
+mod friction;
+mod metric;
+mod steadying;
+mod step;
+mod view;
+
+pub use friction::Coefficients;
+pub(crate) use friction::Friction;
+
 use crate::Gains;
-use crate::friction::Friction;
-use crate::placed::Placed;
 use crate::projection::{Projection, Row};
-use crate::proxy_view::{PENETRATION, View};
-use crate::solid::Solids;
-use crate::steadying::Steadying;
+use crate::solid::{Placed, Solids};
+use metric::{Metric, contact_rows};
 use spatial::{DVec3, Pose, Wrench};
+use steadying::Steadying;
+use step::Step;
+use view::{PENETRATION, View};
 
 /// Re-linearisations in one tick while steps are not cut short; with cut steps (fast motion), in all.
 const ROUNDS: usize = 4;
@@ -45,76 +54,6 @@ pub(crate) struct Proxy {
     sight: f64,
     /// Motion since the last look, metres.
     stale: f64,
-}
-
-/// A small motion of the proxy: translation (m) and rotation vector (rad), axes of W.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Step {
-    pub dp: DVec3,
-    pub dtheta: DVec3,
-}
-
-impl Step {
-    fn scaled(self, s: f64) -> Self {
-        Self { dp: self.dp * s, dtheta: self.dtheta * s }
-    }
-
-    /// Largest way of a point of the body, metres.
-    fn way(&self, lever: f64) -> f64 {
-        self.dp.length() + lever * self.dtheta.length()
-    }
-}
-
-/// The coupling's metric: one over the square roots of its stiffnesses.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Metric {
-    per_root_f: f64,
-    per_root_r: f64,
-}
-
-impl Metric {
-    fn new(gains: &Gains) -> Self {
-        // A stiffness of zero would leave the proxy undetermined; the wrench is scaled by the true gains anyway.
-        let per_root = |stiffness: f64, least: f64| 1.0 / stiffness.max(least).sqrt();
-        Self { per_root_f: per_root(gains.stiffness, 1e-6), per_root_r: per_root(gains.rotation_stiffness, 1e-9) }
-    }
-
-    /// The same program with turns held back, and the goal that then leads to the same pose.
-    fn steadied(&self, steadying: &Steadying, goal: &Step) -> (Self, Step) {
-        let factor = steadying.factor();
-        let metric = Self { per_root_r: self.per_root_r * factor.sqrt(), ..*self };
-        (metric, Step { dtheta: goal.dtheta * factor, ..*goal })
-    }
-
-    pub fn row(&self, normal: DVec3, moment: DVec3, offset: f64, goal: &Step, equality: bool) -> Row<6> {
-        let (n, m) = (normal * self.per_root_f, moment * self.per_root_r);
-        let offset = offset - normal.dot(goal.dp) - moment.dot(goal.dtheta);
-        Row { normal: [n.x, n.y, n.z, m.x, m.y, m.z], offset, equality }
-    }
-
-    /// Where the goal is with `wrench` (N and N.m) pulling at the body.
-    pub fn pulled(&self, goal: &Step, wrench: &Wrench) -> Step {
-        Step {
-            dp: goal.dp + wrench.force * (self.per_root_f * self.per_root_f),
-            dtheta: goal.dtheta + wrench.torque * (self.per_root_r * self.per_root_r),
-        }
-    }
-
-    pub fn step(&self, z: &[f64; 6], goal: &Step) -> Step {
-        Step {
-            dp: goal.dp + DVec3::new(z[0], z[1], z[2]) * self.per_root_f,
-            dtheta: goal.dtheta + DVec3::new(z[3], z[4], z[5]) * self.per_root_r,
-        }
-    }
-}
-
-/// One row for each contact in view: it may close its gap, no more.
-pub(crate) fn contact_rows(rows: &mut Vec<Row<6>>, view: &View, pose: &Pose, metric: &Metric, goal: &Step) {
-    rows.clear();
-    for p in &view.points {
-        let arm = p.point_w - pose.translation;
-        rows.push(metric.row(p.normal_w, arm.cross(p.normal_w), -p.gap, goal, false));
-    }
 }
 
 impl Proxy {

@@ -1,5 +1,5 @@
+use crate::coupling::passivity::HOLD_MARGIN;
 use crate::low_pass_share;
-use crate::passivity::HOLD_MARGIN;
 use nalgebra::{Complex, Matrix2, Matrix3, RowVector2, Vector2};
 use std::f64::consts::PI;
 

@@ -3,20 +3,15 @@
 mod hold;
 mod refine;
 
-use crate::facing::facing_point;
-use crate::pair::{Covered, Pair, SAME};
-use crate::placed::Placed;
 use crate::projection::{Projection, Row};
-use crate::renderer::SCP_MARGIN;
-use crate::sense::{Sense, Sensed};
-use crate::solid::Solids;
+use crate::region::TIED;
+use crate::solid::{Covered, Pair, Placed, SAME, Sense, Sensed, Solids, facing_point};
 use cspace::{BasicContact, CFace};
 use hold::Held;
 use spatial::{DVec3, Pose};
 
-/// Contacts whose depths differ by less than this part of the moving part's size take place together; half as much again keeps
-/// them together once they are, so that the formation does not chatter.
-pub(crate) const TIED: f64 = 1e-6;
+/// Pairs this close to the hand may bound the SCP, metres.
+pub(crate) const SCP_MARGIN: f64 = 5e-3;
 /// A pair is free of the SCP when its plane is violated by no more than this, metres; and touches up to as much above it.
 const FREED: f64 = 1e-9;
 /// A felt plane that lies no more than this part of the depth behind its seam is taken without a look at others.
@@ -72,7 +67,7 @@ impl Unfelt {
     fn felt_plane(&mut self, solids: &Solids, placed: &Placed, hints: &mut [Option<BasicContact>]) -> Option<CFace> {
         let near = &self.pair.near;
         *self.plane.get_or_insert_with(|| {
-            let pair = solids.of(&self.pair, placed);
+            let pair = Pair::of(solids, &self.pair, placed);
             let hint = &mut hints[pair.part * solids.world.fixed.len() + pair.piece];
             pair.felt_plane(near, Covered::Felt, hint)
         })
@@ -196,7 +191,7 @@ impl Scp {
             if !holds {
                 continue;
             }
-            let pair = solids.pair(t.part, t.piece, placed);
+            let pair = Pair::new(solids, t.part, t.piece, placed);
             let rank = |p: &Projection<3>| (p.contradictions, p.way_squared());
             let (contradictions, way_squared) = rank(projection);
             let mut least = (contradictions, NEARER * way_squared);
@@ -275,7 +270,7 @@ impl Scp {
     /// Whether the planes that push have contacts that take place at the SCP.
     fn takes_place(&self, solids: &Solids, scp: &Placed) -> bool {
         let touches_there = |part: u32, piece: u32, plane: &CFace| {
-            facing_point(&solids.pair(part, piece, scp), &CFace { distance: 0.0, ..*plane }, FREED).is_some()
+            facing_point(&Pair::new(solids, part, piece, scp), &CFace { distance: 0.0, ..*plane }, FREED).is_some()
         };
         // Of the pieces that one wall is cut into, any may carry the force, and any other be touched.
         let same_wall = |t: &Touch, u: &Touch| {
@@ -306,7 +301,7 @@ impl Scp {
             if s.near.distance > 2.0 * deepest {
                 continue;
             }
-            if solids.of(s, placed).is_felt(&s.near, Covered::Unfelt) {
+            if Pair::of(solids, s, placed).is_felt(&s.near, Covered::Unfelt) {
                 self.touch(solids, s.part, s.piece, s.near);
             } else if s.near.distance < 0.0 || !depth_alone {
                 self.unfelt.push(Unfelt { pair: *s, plane: None, parted: false });
@@ -357,7 +352,7 @@ impl Scp {
             // the SCP: it has what lies behind a rim behind it.
             let is_way_out = shift.length_squared() <= far * far || !unfelt[k].is_close(&plane);
             let there = placed.shifted(shift);
-            let at_scp = solids.pair(part, piece, &there);
+            let at_scp = Pair::new(solids, part, piece, &there);
             if again && is_way_out && is_parted(&at_scp, touches, projection) {
                 unfelt[k].parted = true;
                 continue;

@@ -1,9 +1,7 @@
 //! The two assemblies in contact, with their seams.
 
-use crate::pair::Pair;
-use crate::placed::Placed;
-use crate::seams::{Cover, Seams};
-use crate::sense::Sensed;
+use crate::solid::seams::Seams;
+use crate::solid::{Cover, Placed};
 use cspace::{BasicContact, FaceId, Polyhedron, World};
 use spatial::DVec3;
 use std::sync::Arc;
@@ -99,16 +97,6 @@ impl Solids {
             _ => None,
         };
         of_a.iter().filter_map(with_a).chain(of_b.iter().filter_map(with_b))
-    }
-
-    /// A part and a piece, A being where it is placed.
-    pub fn pair<'a>(&'a self, part: u32, piece: u32, placed: &'a Placed) -> Pair<'a> {
-        Pair::new(self, part as usize, piece as usize, placed)
-    }
-
-    /// The pair that was sensed.
-    pub fn of<'a>(&'a self, sensed: &Sensed, placed: &'a Placed) -> Pair<'a> {
-        self.pair(sensed.part, sensed.piece, placed)
     }
 }
 

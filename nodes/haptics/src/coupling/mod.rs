@@ -1,3 +1,13 @@
+//! Between law and hand: the damping half of the virtual coupling, passivity, limits, and where the sampled loop is stable.
+
+mod limiter;
+mod passivity;
+mod sampled_loop;
+
+pub use limiter::{Limited, Limiter, clamped};
+pub use passivity::{Displacement, Held, Passivity, PassivityLimits, returnable_energy};
+pub use sampled_loop::{HoldDamping, SampledLoop};
+
 use crate::{Gains, LawKind, LawOutput};
 use spatial::{DVec3, Pose, Twist, Wrench};
 

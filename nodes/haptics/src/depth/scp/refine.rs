@@ -1,11 +1,8 @@
 //! Where planes near the hand do not tell the SCP: the search around, and what is felt where it leads nowhere.
 
 use super::{FAR, FREED, Scp, Touch, row};
-use crate::compromise::Compromise;
-use crate::pair::Covered;
-use crate::placed::Placed;
-use crate::sense::Sensed;
-use crate::solid::Solids;
+use crate::depth::compromise::Compromise;
+use crate::solid::{Covered, Pair, Placed, Sensed, Solids};
 use cspace::CFace;
 use spatial::{DVec3, Pose};
 
@@ -140,7 +137,7 @@ impl Scp {
             if !(inside || loose || all && known.is_none()) {
                 continue;
             }
-            let pair = solids.of(&s, &placed);
+            let pair = Pair::of(solids, &s, &placed);
             let plane = if pair.is_felt(&s.near, Covered::Unfelt) {
                 Some(s.near)
             } else {

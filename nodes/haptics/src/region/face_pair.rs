@@ -1,7 +1,7 @@
 //! A face of A laid on a face of B: where they lie over each other, and what takes place there.
 
-use crate::pair::Pair;
-use crate::region::{RegionPoint, Scope};
+use crate::region::point::{PARALLEL_EDGES, RegionPoint, Scope};
+use crate::solid::Pair;
 use cspace::{BasicContact, EdgeId, FaceId, Plane, VertexId};
 use spatial::DVec3;
 
@@ -16,8 +16,6 @@ pub(crate) enum Corner {
     Crossing(usize, usize),
 }
 
-/// Edges that cross at less than this angle (radians) have no reliable common normal: the face's is used.
-pub(crate) const PARALLEL_EDGES: f64 = 0.02;
 /// Cosines between the two faces, and between either and the sight, below which they do not lie over each other.
 const STEEP: f64 = 0.1;
 /// Vertices past a joint by a face that they lie farther below than this are none of its contacts, metres.

@@ -1,12 +1,8 @@
 //! From tick to tick the same planes hold the SCP nearly always: then there is nothing to search.
 
-use super::{FAR, FREED, Scp, Touch, is_parted, row, tie_of};
-use crate::pair::{Covered, SAME};
-use crate::placed::Placed;
+use super::{FAR, FREED, SCP_MARGIN, Scp, Touch, is_parted, row, tie_of};
 use crate::projection::Projection;
-use crate::renderer::SCP_MARGIN;
-use crate::sense::Sensed;
-use crate::solid::Solids;
+use crate::solid::{Covered, Pair, Placed, SAME, Sensed, Solids};
 use cspace::CFace;
 use spatial::{DVec3, Pose};
 
@@ -56,7 +52,7 @@ impl Scp {
         let has_choice = |t: &Touch| {
             let mut found = false;
             if together && t.push > 0.0 {
-                let pair = solids.pair(t.part, t.piece, placed);
+                let pair = Pair::new(solids, t.part, t.piece, placed);
                 pair.offer_planes_beside(&t.plane, farthest, SAME, |face| {
                     found = found || pair.is_felt(&face, Covered::Unfelt);
                 });
@@ -88,7 +84,7 @@ impl Scp {
         let most = ROOM * depth;
         let of_touch = |t: &Touch| match pairs.iter().find(|s| is_of(t, s)) {
             Some(s) if s.near.contact == t.plane.contact => most,
-            Some(s) => 0.5 * solids.of(s, placed).lead_over_faces(&s.near, &t.plane, 2.0 * most),
+            Some(s) => 0.5 * Pair::of(solids, s, placed).lead_over_faces(&s.near, &t.plane, 2.0 * most),
             None => 0.0,
         };
         self.touches.iter().map(of_touch).fold(most, f64::min)
@@ -134,8 +130,8 @@ impl Scp {
             left > 4.0 * tie_of(solids, s.part)
                 || self.touches.iter().any(|t| is_of(t, s))
                 || left < -FREED
-                    && !solids.of(s, placed).is_felt(&s.near, Covered::Unfelt)
-                    && is_parted(&solids.of(s, &there), &self.touches, &self.projection)
+                    && !Pair::of(solids, s, placed).is_felt(&s.near, Covered::Unfelt)
+                    && is_parted(&Pair::of(solids, s, &there), &self.touches, &self.projection)
         };
         if !pairs.iter().all(is_apart) || !self.takes_place(solids, &there) {
             return None;
@@ -152,7 +148,7 @@ impl Scp {
         self.rows.clear();
         for (i, t) in self.touches.iter_mut().enumerate() {
             let s = pairs.iter().find(|s| is_of(t, s))?;
-            let pair = solids.of(s, placed);
+            let pair = Pair::of(solids, s, placed);
             if pair.is_felt(&s.near, Covered::Unfelt) {
                 t.plane = s.near;
             } else if i < felt {
@@ -177,7 +173,8 @@ impl Scp {
             }
             let there = placed.shifted(DVec3::from_array(self.projection.z));
             let is_free = |s: &Sensed| {
-                is_freed(&s.near, &self.projection) || is_parted(&solids.of(s, &there), &self.touches, &self.projection)
+                is_freed(&s.near, &self.projection)
+                    || is_parted(&Pair::of(solids, s, &there), &self.touches, &self.projection)
             };
             if !others.all(is_free) {
                 return None;
@@ -192,7 +189,7 @@ impl Scp {
         self.rows.clear();
         for t in &mut self.touches {
             let s = pairs.iter().find(|s| is_of(t, s))?;
-            let pair = solids.of(s, placed);
+            let pair = Pair::of(solids, s, placed);
             // A nearest plane that is felt is the one to hold.
             let is_near = s.near.contact == t.plane.contact;
             let covered = if is_near { Covered::Felt } else { Covered::Unfelt };

@@ -1,10 +1,9 @@
 //! A part and a piece where they are: which of their contact planes may be felt, and which lie nearest.
 
-use crate::placed::Placed;
-use crate::seams::Cover;
-use crate::solid::Solids;
+use crate::solid::features::{edges_of_a, edges_of_b, vertices_of_a, vertices_of_b};
+use crate::solid::{Cover, Placed, Sensed, Solids};
 use cspace::{
-    BasicContact, CFace, Edge, EdgeId, FaceId, Plane, Polyhedron, VertexId, contact_point_turned, is_applicable_turned,
+    BasicContact, CFace, Edge, EdgeId, FaceId, Plane, Polyhedron, contact_point_turned, is_applicable_turned,
 };
 use spatial::DVec3;
 
@@ -38,8 +37,15 @@ pub(crate) struct Pair<'a> {
 }
 
 impl<'a> Pair<'a> {
-    pub fn new(solids: &'a Solids, part: usize, piece: usize, placed: &'a Placed) -> Self {
+    /// A part and a piece, A being where it is placed.
+    pub fn new(solids: &'a Solids, part: u32, piece: u32, placed: &'a Placed) -> Self {
+        let (part, piece) = (part as usize, piece as usize);
         Self { solids, part, piece, a: solids.part(part), b: solids.piece(piece), placed }
+    }
+
+    /// The pair that was sensed.
+    pub fn of(solids: &'a Solids, sensed: &Sensed, placed: &'a Placed) -> Self {
+        Self::new(solids, sensed.part, sensed.piece, placed)
     }
 
     /// Whether the contact is one of the uncut solids. Vertices and edges are judged where they are; a face that is
@@ -257,7 +263,7 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// See [`Solids::felt_plane`]; `best` is known already.
+    /// See [`Pair::felt_plane`]; `best` is known already.
     fn felt_from(&self, near: &CFace, covered: Covered, mut best: Option<CFace>) -> Option<CFace> {
         // No plane is nearer than Near's: a tie cannot be bettered.
         let tie = near.distance - 1e-12;
@@ -333,44 +339,6 @@ fn plane_of_face_b(a: &Polyhedron, b: &Polyhedron, placed: &Placed, face_b: Face
     let vertex_a = a.support(-(placed.r.transpose() * plane.normal));
     let distance = plane.signed_distance(placed.point(a.vertex(vertex_a)));
     CFace { contact: BasicContact::TypeB { vertex_a, face_b }, normal_w: plane.normal, distance }
-}
-
-/// Three vertices of A at a contact's features, some of them twice.
-fn vertices_of_a(a: &Polyhedron, c: &BasicContact) -> [VertexId; 3] {
-    match *c {
-        BasicContact::TypeA { face_a, .. } => three_of(a.face_vertices(face_a)),
-        BasicContact::TypeB { vertex_a, .. } => [vertex_a; 3],
-        BasicContact::TypeC { edge_a, .. } => three_of(&a.edge(edge_a).vertices),
-    }
-}
-
-fn vertices_of_b(b: &Polyhedron, c: &BasicContact) -> [VertexId; 3] {
-    match *c {
-        BasicContact::TypeA { vertex_b, .. } => [vertex_b; 3],
-        BasicContact::TypeB { face_b, .. } => three_of(b.face_vertices(face_b)),
-        BasicContact::TypeC { edge_b, .. } => three_of(&b.edge(edge_b).vertices),
-    }
-}
-
-/// Three of at least two, as far around the ring as it goes.
-fn three_of(ring: &[VertexId]) -> [VertexId; 3] {
-    [ring[0], ring[ring.len() / 2], ring[ring.len() - 1]]
-}
-
-pub(crate) fn edges_of_a<'a>(a: &'a Polyhedron, c: &BasicContact) -> &'a [EdgeId] {
-    match *c {
-        BasicContact::TypeA { face_a, .. } => a.face_edges(face_a),
-        BasicContact::TypeB { vertex_a, .. } => a.vertex_edges(vertex_a),
-        BasicContact::TypeC { edge_a, .. } => a.edge_edges(edge_a),
-    }
-}
-
-pub(crate) fn edges_of_b<'b>(b: &'b Polyhedron, c: &BasicContact) -> &'b [EdgeId] {
-    match *c {
-        BasicContact::TypeA { vertex_b, .. } => b.vertex_edges(vertex_b),
-        BasicContact::TypeB { face_b, .. } => b.face_edges(face_b),
-        BasicContact::TypeC { edge_b, .. } => b.edge_edges(edge_b),
-    }
 }
 
 /// The foot of `p` on the face's plane, drawn into the face side by side: near its nearest point, and inside.

@@ -1,7 +1,8 @@
 //! Edges that end at a joint where the solid is hollow, as the rim of a polygonal hole does at its corners.
 
-use crate::facing::closest_places;
-use crate::pair::{Pair, edges_of_a, edges_of_b};
+use crate::solid::Pair;
+use crate::solid::facing::closest_places;
+use crate::solid::features::{edges_of_a, edges_of_b};
 use cspace::{BasicContact, CFace, EdgeId, is_applicable_turned};
 use spatial::DVec3;
 

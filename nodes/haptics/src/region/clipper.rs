@@ -1,59 +1,12 @@
 //! The contact region of a pair: the two faces in contact, clipped against each other, as basic contacts.
 
-use crate::face_pair::{Corner, FacePair, PARALLEL_EDGES};
-use crate::facing::facing_point;
-use crate::pair::Pair;
-use crate::seams::Cover;
-use crate::sense::Sensed;
-use crate::span::{Cut, Span};
+use crate::region::face_pair::{Corner, FacePair};
+use crate::region::facing_faces::{facing_pairs, most_parallel, pairs_along_edges};
+use crate::region::point::{RegionPoint, Scope, own_tolerance, push_within, same_place};
+use crate::region::span::{Cut, Span};
+use crate::solid::{Pair, Sensed, facing_point};
 use cspace::{BasicContact, CFace, FaceId, Polyhedron, World};
 use spatial::DVec3;
-
-/// A basic contact of the region: one of the paper's K contacts when it takes place, a potential one when it has a gap.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RegionPoint {
-    pub contact: BasicContact,
-    /// App_k, metres, W: on the surface of B.
-    pub point_w: DVec3,
-    /// Unit, axes of W, from B to A.
-    pub normal_w: DVec3,
-    /// Signed distance of A to B at this contact, metres, `< 0` is penetration: along the normal, or along Near's: see [`Scope`].
-    pub gap: f64,
-}
-
-impl RegionPoint {
-    /// The contact of a plane itself, at `point_w` on B.
-    pub fn of(plane: &CFace, point_w: DVec3) -> Self {
-        Self { contact: plane.contact, point_w, normal_w: plane.normal_w, gap: plane.distance }
-    }
-
-    /// A crossing of edges (unit directions, axes of W) whose place on A has moved by `motion`: the place slides along B's edge,
-    /// the normal stays across both. One that has the face's normal keeps it.
-    pub fn follow_crossing(&mut self, along_a: DVec3, along_b: DVec3, motion: DVec3) {
-        let n = along_a.cross(along_b);
-        let length = n.length();
-        let lean = n.dot(self.normal_w);
-        if length <= PARALLEL_EDGES || lean.abs() < 0.9999 * length {
-            return;
-        }
-        self.point_w += along_b * (motion.cross(along_a).dot(n) / -(length * length));
-        self.normal_w = n * (lean.signum() / length);
-    }
-}
-
-/// Which contacts of a region are wanted, and seen in which direction.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Scope {
-    /// Contacts with a gap of up to this, metres: along their own normals, or along Near's if seen along it.
-    pub reach: f64,
-    /// Near's own contact, at its exact place.
-    pub near_felt: bool,
-    /// Not only of the two most nearly parallel faces, but of all at Near's features that lean less than 60 degrees.
-    pub wide: bool,
-    /// The faces are laid on each other along Near's normal, in which the crossing of Near's edges is exact; else along the
-    /// normal of B's face, in which A's vertices touch it.
-    pub along_near: bool,
-}
 
 /// Scratch for clipping; grows at construction only.
 #[derive(Clone, Debug, Default)]
@@ -67,13 +20,10 @@ pub(crate) struct Clipper {
     pairs: Vec<(FaceId, FaceId)>,
 }
 
-/// Contacts closer together than this part of the size are one.
-const SAME_POINT: f64 = 1e-8;
 /// Normals that differ by less, radians, bound one motion.
 const ONE_DIRECTION: f64 = 1e-4;
-/// Most pairs of faces clipped for one contact, and the cosine up to which they count as facing each other.
+/// Most pairs of faces clipped for one contact.
 const MAX_PAIRS: usize = 8;
-const FACING: f64 = -0.5;
 
 impl Clipper {
     /// Room for the largest faces of the world.
@@ -131,7 +81,7 @@ impl Clipper {
         self.pairs.clear();
         facing_pairs(pair, near, &mut self.pairs);
         for s in others {
-            let other = pair.solids.of(s, pair.placed);
+            let other = Pair::of(pair.solids, s, pair.placed);
             if (other.part, other.piece) == (pair.part, pair.piece) {
                 continue;
             }
@@ -250,93 +200,5 @@ fn push(p: RegionPoint, (same, apart): (f64, bool), [first, ring]: [usize; 2], o
     };
     if !known() {
         push_within(out, p);
-    }
-}
-
-/// Keeps a contact if there is room.
-pub(crate) fn push_within(points: &mut Vec<RegionPoint>, p: RegionPoint) {
-    if points.len() < points.capacity() {
-        points.push(p);
-    }
-}
-
-/// How far outside Near's features may face each other, metres.
-pub(crate) fn own_tolerance(pair: &Pair<'_>) -> f64 {
-    1e3 * same_place(pair)
-}
-
-/// Contacts closer together than this are one, metres.
-fn same_place(pair: &Pair<'_>) -> f64 {
-    SAME_POINT * (pair.a.size() + pair.b.size())
-}
-
-/// The pair of faces, one of each body, at the features of `near` that are most nearly antiparallel.
-pub(crate) fn most_parallel(pair: &Pair<'_>, near: &CFace) -> Option<(FaceId, FaceId)> {
-    let mut best = (f64::INFINITY, None);
-    for_each_pair(pair, near, |cosine, faces| {
-        if cosine < best.0 {
-            best = (cosine, Some(faces));
-        }
-    });
-    best.1
-}
-
-/// The pairs of faces at the features of `near` that face each other: the most nearly antiparallel, and as many others as
-/// `out` has room for.
-fn facing_pairs(pair: &Pair<'_>, near: &CFace, out: &mut Vec<(FaceId, FaceId)>) {
-    out.extend(most_parallel(pair, near));
-    for_each_pair(pair, near, |cosine, faces| {
-        if cosine < FACING && out.len() < out.capacity() && out.first() != Some(&faces) {
-            out.push(faces);
-        }
-    });
-}
-
-/// Adds to the pair of faces that was chosen at two crossing edges those of the other faces there that the other body's edge lies
-/// along, within `reach` metres: it crosses their far sides, too, and all these places bound the motion.
-fn pairs_along_edges(pair: &Pair<'_>, near: &CFace, reach: f64, out: &mut Vec<(FaceId, FaceId)>) {
-    let Pair { solids, a, b, part, piece, placed } = *pair;
-    let (BasicContact::TypeC { edge_a, edge_b }, Some(&chosen)) = (near.contact, out.first()) else { return };
-    let along_a = placed.r * a.edge_direction(edge_a);
-    let along_b = placed.r.transpose() * b.edge_direction(edge_b);
-    for face_a in a.edge(edge_a).faces {
-        let slope = a.face_plane(face_a).normal.dot(along_b).abs();
-        if face_a != chosen.0 && slope * a.size() <= reach && !solids.is_internal_a(part, face_a) {
-            out.push((face_a, chosen.1));
-        }
-    }
-    for face_b in b.edge(edge_b).faces {
-        let slope = b.face_plane(face_b).normal.dot(along_a).abs();
-        if face_b != chosen.1 && slope * b.size() <= reach && !solids.is_internal_b(piece, face_b) {
-            out.push((chosen.0, face_b));
-        }
-    }
-}
-
-/// Calls `each` with the pairs of surface faces at the features of `near`, and the cosine between their outward normals.
-fn for_each_pair(pair: &Pair<'_>, near: &CFace, mut each: impl FnMut(f64, (FaceId, FaceId))) {
-    let Pair { solids, a, b, part, piece, placed } = *pair;
-    let (one_a, one_b);
-    let (edge_a_faces, edge_b_faces);
-    let (faces_a, faces_b): (&[FaceId], &[FaceId]) = match near.contact {
-        BasicContact::TypeB { vertex_a, face_b } => {
-            one_b = [face_b];
-            (a.vertex_faces(vertex_a), &one_b)
-        }
-        BasicContact::TypeA { face_a, vertex_b } => {
-            one_a = [face_a];
-            (&one_a, b.vertex_faces(vertex_b))
-        }
-        BasicContact::TypeC { edge_a, edge_b } => {
-            (edge_a_faces, edge_b_faces) = (a.edge(edge_a).faces, b.edge(edge_b).faces);
-            (&edge_a_faces, &edge_b_faces)
-        }
-    };
-    let (covers_a, covers_b) = (solids.moving.covers(part), solids.fixed.covers(piece));
-    for i in faces_a.iter().filter(|f| covers_a[f.index()] != Cover::Internal) {
-        let normal = placed.r * a.face_plane(*i).normal;
-        for j in faces_b.iter().filter(|f| covers_b[f.index()] != Cover::Internal) {
-            each(b.face_plane(*j).normal.dot(normal), (*i, *j));
-        }
     }
 }

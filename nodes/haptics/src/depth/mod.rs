@@ -1,16 +1,21 @@
 //! The laws that read the wrench off the hand's own pose: `paper`, `pstar` and `blended`.
 
-use crate::paper_torque::torque;
-use crate::placed::Placed;
-use crate::reduced_hull::nearest_point;
-use crate::region::{Clipper, RegionPoint, Scope, push_within};
-use crate::scp::{Scp, TIED, Touch};
-use crate::sense::Sensed;
-use crate::shares::Shares;
-use crate::solid::Solids;
-use crate::tied::tied_contacts;
+mod compromise;
+mod paper_torque;
+mod reduced_hull;
+mod scp;
+mod shares;
+
+pub(crate) use scp::SCP_MARGIN;
+
+use crate::region::{Clipper, RegionPoint, Scope, TIED, push_within, tied_contacts};
+use crate::solid::{Pair, Placed, Sensed, Solids};
 use crate::{ContactPoint, FormationKind, Gains, LawKind, LawOutput};
 use cspace::{BasicContact, contact_point_turned};
+use paper_torque::torque;
+use reduced_hull::nearest_point;
+use scp::{Scp, Touch};
+use shares::Shares;
 use spatial::{DVec3, Pose};
 
 /// Planes are one constraint when their normals differ by less than this (radians) and their offsets by this part of the part's size.
@@ -101,7 +106,7 @@ impl DepthLaw {
             if t.plane.distance >= 0.0 {
                 continue;
             }
-            let pair = solids.pair(t.part, t.piece, placed);
+            let pair = Pair::new(solids, t.part, t.piece, placed);
             t.tie *= if was_multiple { 1.5 } else { 1.0 };
             let within = if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
             let (limit, plane) = (t.left + within, t.plane_there());
@@ -168,7 +173,13 @@ impl DepthLaw {
         }
         let reach = t.left + gains.blend_depth.max(t.tie);
         let scope = Scope { reach, near_felt: false, wide: true, along_near: true };
-        self.clipper.beside(&solids.pair(t.part, t.piece, placed), pairs, &t.plane_there(), &scope, &mut self.beside);
+        self.clipper.beside(
+            &Pair::new(solids, t.part, t.piece, placed),
+            pairs,
+            &t.plane_there(),
+            &scope,
+            &mut self.beside,
+        );
     }
 
     /// The torque of the force share that plane `i` carries, over the contacts of all pairs with an equal plane.

@@ -2,8 +2,9 @@
 
 use crate::Gains;
 use crate::projection::{Projection, Row};
-use crate::proxy::{Metric, Step, contact_rows};
-use crate::proxy_view::View;
+use crate::proxy::metric::{Metric, contact_rows};
+use crate::proxy::step::Step;
+use crate::proxy::view::View;
 use spatial::{DVec3, Pose, Wrench};
 
 /// Coefficients of one obstacle.

@@ -1,8 +1,8 @@
 //! Keeps the proxy's rounds from overshooting where contacts lean on long levers.
 
 use crate::projection::Projection;
-use crate::proxy::Step;
-use crate::proxy_view::View;
+use crate::proxy::step::Step;
+use crate::proxy::view::View;
 use cspace::BasicContact;
 use spatial::DVec3;
 

@@ -1,12 +1,16 @@
 //! The region of contacts whose depths tie, where a vertex or an edge alone decides it: most are so, and need no clipping.
 
-use crate::face_pair::{Corner, FacePair};
-use crate::facing::facing_point;
-use crate::pair::Pair;
-use crate::region::{RegionPoint, Scope, most_parallel, own_tolerance, push_within};
-use crate::span::{Cut, Span};
+use crate::region::face_pair::{Corner, FacePair};
+use crate::region::facing_faces::most_parallel;
+use crate::region::point::{RegionPoint, Scope, own_tolerance, push_within};
+use crate::region::span::{Cut, Span};
+use crate::solid::{Pair, facing_point};
 use cspace::{BasicContact, CFace, EdgeId, Plane, Polyhedron, VertexId};
 use spatial::DVec3;
+
+/// Contacts whose depths differ by less than this part of the moving part's size take place together; half as much again keeps
+/// them together once they are, so that the formation does not chatter.
+pub(crate) const TIED: f64 = 1e-6;
 
 /// Appends the contacts that [`crate::region::Clipper::region`] would find, if these are no more than `within` metres above `near`
 /// along its normal and a vertex or an edge of one body is all that comes so near to the other. False if it is not or may not be so.
@@ -226,12 +230,8 @@ fn slope_at_ends(body: &Polyhedron, edge: EdgeId, up: DVec3, within: f64) -> Opt
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pair::Covered;
-    use crate::placed::Placed;
     use crate::region::Clipper;
-    use crate::scp::TIED;
-    use crate::sense::Sense;
-    use crate::solid::Solids;
+    use crate::solid::{Covered, Placed, Sense, Solids};
     use crate::testing::cuboid;
     use cspace::{FixedPart, World};
     use rand::{RngExt, SeedableRng};
@@ -288,7 +288,7 @@ mod tests {
             sense.step(&pose);
             let placed = Placed::new(&pose);
             for s in sense.pairs.iter().filter(|s| s.near.distance < 0.0) {
-                let pair = solids.of(s, &placed);
+                let pair = Pair::of(&solids, s, &placed);
                 let Some(plane) = pair.felt_plane(&s.near, Covered::Felt, &mut None) else { continue };
                 let within = 2.0 * pair.a.size() * TIED;
                 let scope = Scope { reach: plane.distance + within, near_felt: true, wide: false, along_near: true };

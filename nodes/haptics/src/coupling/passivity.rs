@@ -1,5 +1,5 @@
 use crate::Gains;
-use crate::limiter::limit_factor;
+use crate::coupling::limiter::limit_factor;
 use spatial::{DVec3, Wrench};
 
 /// The most that the account of the local contact may hold, J: dissipation of long ago does not pay for energy now.

@@ -1,6 +1,6 @@
 //! Whether the features of a basic contact face each other, and where.
 
-use crate::pair::Pair;
+use crate::solid::Pair;
 use cspace::{BasicContact, CFace, FaceId, Polyhedron};
 use spatial::DVec3;
 

@@ -1,13 +1,9 @@
 //! What the proxy sees around it: the contacts of all pairs in reach, and how deep it penetrates.
 
 use crate::formation::{ContactFormation, ContactPoint, FormationKind};
-use crate::hollow::each_hollow_end;
-use crate::pair::{Covered, TURN};
-use crate::placed::Placed;
-use crate::proxy::Step;
+use crate::proxy::step::Step;
 use crate::region::{Clipper, RegionPoint, Scope, most_parallel, push_within};
-use crate::sense::{Sense, Sensed};
-use crate::solid::Solids;
+use crate::solid::{Covered, Pair, Placed, Sense, Sensed, Solids, TURN, each_hollow_end};
 use cspace::{BasicContact, CFace};
 use spatial::{DVec3, Pose};
 
@@ -182,7 +178,7 @@ impl View {
         self.unfelt.resize(self.sense.pairs.len(), false);
         for k in 0..self.sense.pairs.len() {
             let s = self.sense.pairs[k];
-            if solids.of(&s, &placed).is_felt(&s.near, Covered::Unfelt) {
+            if Pair::of(solids, &s, &placed).is_felt(&s.near, Covered::Unfelt) {
                 felt_penetration = felt_penetration.max(-s.near.distance);
                 self.last_felt[s.part as usize * self.pieces + s.piece as usize] = Some(s.near.contact);
                 self.list(solids, s.part, s.piece, &s.near, true, &placed);
@@ -203,7 +199,7 @@ impl View {
             if !self.unfelt[k] {
                 continue;
             }
-            let pair = solids.of(&s, &placed);
+            let pair = Pair::of(solids, &s, &placed);
             let hint = &mut self.hints[pair.part * self.pieces + pair.piece];
             let plane = pair.felt_plane(&s.near, Covered::Unfelt, hint);
             let is_beside = plane.is_some_and(|p| p.distance >= -BESIDE);
@@ -223,7 +219,7 @@ impl View {
     fn list_hollow_ends(&mut self, solids: &Solids, s: &Sensed, placed: &Placed) -> bool {
         let first = self.points.len();
         let points = &mut self.points;
-        let pair = solids.of(s, placed);
+        let pair = Pair::of(solids, s, placed);
         let last = self.last_felt[pair.part * self.pieces + pair.piece];
         each_hollow_end(&pair, &s.near, last, (-BESIDE, self.listed), |plane, at| {
             push_within(points, RegionPoint::of(&plane, at));
@@ -237,7 +233,7 @@ impl View {
 
     /// Whether a face of the solid at Near's features stands across Near's normal.
     fn leans_on_open_face(&self, solids: &Solids, s: &Sensed, placed: &Placed) -> bool {
-        let pair = solids.of(s, placed);
+        let pair = Pair::of(solids, s, placed);
         most_parallel(&pair, &s.near)
             .is_some_and(|(_, face_b)| pair.b.face_plane(face_b).normal.dot(s.near.normal_w) > 0.9)
     }
@@ -245,7 +241,7 @@ impl View {
     fn list(&mut self, solids: &Solids, part: u32, piece: u32, plane: &CFace, felt: bool, placed: &Placed) {
         let first = self.points.len();
         let scope = Scope { reach: self.listed, near_felt: felt, wide: false, along_near: false };
-        self.clipper.region(&solids.pair(part, piece, placed), plane, &scope, &mut self.points);
+        self.clipper.region(&Pair::new(solids, part, piece, placed), plane, &scope, &mut self.points);
         self.pairs.push(InReach { part, piece, first, end: self.points.len(), plane: *plane, felt });
     }
 
@@ -269,7 +265,7 @@ impl View {
         if !touches || tie <= TIE && untied.is_some_and(|u| u.holds(pair.plane.contact, pose, self.lever)) {
             return None;
         }
-        let (contact, bodies) = (pair.plane.contact, solids.pair(pair.part, pair.piece, placed));
+        let (contact, bodies) = (pair.plane.contact, Pair::new(solids, pair.part, pair.piece, placed));
         let (tied, room) = bodies.tied_plane(&pair.plane, tie, UNTIED);
         let turn = TURN / (1.0 + bodies.leverage(contact));
         *untied = (room > 0.0).then_some(Untied { contact, at: *pose, room, turn });

@@ -1,0 +1,19 @@
+//! The two bodies in contact, uncut: which contacts of their convex pieces are the bodies' own, and which lie nearest.
+
+mod cover;
+mod facing;
+mod features;
+mod hollow;
+mod pair;
+mod placed;
+mod seams;
+mod sense;
+mod solids;
+
+pub(crate) use cover::Cover;
+pub(crate) use facing::facing_point;
+pub(crate) use hollow::each_hollow_end;
+pub(crate) use pair::{Covered, Pair, SAME, TURN};
+pub(crate) use placed::Placed;
+pub(crate) use sense::{Sense, Sensed};
+pub(crate) use solids::Solids;
