@@ -26,10 +26,9 @@ const EQUAL: f64 = 4e-6;
 pub(crate) struct DepthLaw {
     scp: Scp,
     points: Vec<RegionPoint>,
-    /// Contacts of other pairs that belong to the region in hand.
-    beside: Vec<RegionPoint>,
     places: Vec<DVec3>,
     weights: Vec<f64>,
+    sharpness: Vec<f64>,
     shares: Shares,
     order: Vec<u16>,
     hull: Vec<DVec3>,
@@ -37,6 +36,8 @@ pub(crate) struct DepthLaw {
     multiple: bool,
 }
 
+/// Blunter contacts are none to tell of.
+const BLUNT: f32 = 0.005;
 /// Most contact points held at once.
 const ROOM: usize = 256;
 
@@ -45,9 +46,9 @@ impl DepthLaw {
         Self {
             scp: Scp::new(solids),
             points: Vec::with_capacity(ROOM),
-            beside: Vec::with_capacity(ROOM),
             places: Vec::with_capacity(ROOM),
             weights: Vec::with_capacity(ROOM),
+            sharpness: Vec::with_capacity(ROOM),
             shares: Shares::new(ROOM),
             order: vec![0; ROOM],
             hull: Vec::with_capacity(ROOM),
@@ -79,11 +80,10 @@ impl DepthLaw {
             for t in &mut self.scp.touches {
                 t.left = t.plane.distance + t.plane.normal_w.dot(aside);
             }
-            self.contacts(solids, &there, law, gains, &mut result);
+            self.contacts(solids, pairs, &there, law, gains, &mut result);
             for i in 0..self.scp.touches.len() {
                 let t = self.scp.touches[i];
                 if t.push > 0.0 {
-                    self.widen(solids, pairs, &there, law, gains, &t);
                     result.wrench.torque += self.torque_of(i, t, there.x, law, gains);
                 }
             }
@@ -99,7 +99,15 @@ impl DepthLaw {
     }
 
     /// Clips the contact regions of the penetrating pairs and states the formation.
-    fn contacts(&mut self, solids: &Solids, placed: &Placed, law: LawKind, gains: &Gains, result: &mut LawOutput) {
+    fn contacts(
+        &mut self,
+        solids: &Solids,
+        pairs: &[Sensed],
+        placed: &Placed,
+        law: LawKind,
+        gains: &Gains,
+        result: &mut LawOutput,
+    ) {
         // One state for all pairs: the pieces of one obstacle must switch together.
         let was_multiple = std::mem::take(&mut self.multiple);
         for t in &mut self.scp.touches {
@@ -113,10 +121,21 @@ impl DepthLaw {
             t.first = self.points.len();
             // Along Near's normal no contact can be deeper than Near.
             let scope = Scope { reach: limit, near_felt: true, wide: law == LawKind::Blended, along_near: true };
-            if !tied_contacts(&pair, &plane, within, &scope, &mut self.points) {
+            let is_clipped = !tied_contacts(&pair, &plane, within, &scope, &mut self.points);
+            if is_clipped {
                 self.clipper.region(&pair, &plane, &scope, &mut self.points);
             }
             t.end = self.points.len();
+            if law == LawKind::Blended && t.push > 0.0 && pairs.len() > 1 {
+                // Behind all others what of the region belongs to other pairs: pieces that go on flush with this one. The depths
+                // there may be small, or gaps, where the pair has no contact of its own.
+                let scope = Scope { near_felt: false, ..scope };
+                if !is_clipped {
+                    self.clipper.start(&pair, &plane, &scope);
+                }
+                self.clipper.beside(&pair, pairs, &plane, &scope, &mut self.points);
+            }
+            t.beside = [t.end, self.points.len()];
         }
         self.stand_in(solids, placed);
         for t in &self.scp.touches {
@@ -124,12 +143,14 @@ impl DepthLaw {
             if points.is_empty() {
                 continue;
             }
+            // Between facets that are one face nothing takes place.
+            let counts = |p: &&RegionPoint| p.sharpness >= BLUNT || p.contact == t.plane.contact;
             self.places.clear();
-            self.places.extend(points.iter().map(|p| p.point_w));
+            self.places.extend(points.iter().filter(counts).map(|p| p.point_w));
             let kind = FormationKind::of(&self.places, t.plane.normal_w, t.plane.contact);
             self.multiple |= kind >= FormationKind::EdgeFace;
             result.formation.kind = result.formation.kind.max(kind);
-            for p in points {
+            for p in points.iter().filter(counts) {
                 let kept = result.formation.push(ContactPoint {
                     part_a: t.part,
                     piece_b: t.piece,
@@ -164,37 +185,20 @@ impl DepthLaw {
         }
     }
 
-    /// Adds, behind all others, what of the region of `t` belongs to other pairs: pieces that go on flush with it. The depths there
-    /// may be small, or gaps, where the pair has no contact of its own.
-    fn widen(&mut self, solids: &Solids, pairs: &[Sensed], placed: &Placed, law: LawKind, gains: &Gains, t: &Touch) {
-        self.beside.clear();
-        if law != LawKind::Blended || pairs.len() < 2 {
-            return;
-        }
-        let reach = t.left + gains.blend_depth.max(t.tie);
-        let scope = Scope { reach, near_felt: false, wide: true, along_near: true };
-        self.clipper.beside(
-            &Pair::new(solids, t.part, t.piece, placed),
-            pairs,
-            &t.plane_there(),
-            &scope,
-            &mut self.beside,
-        );
-    }
-
     /// The torque of the force share that plane `i` carries, over the contacts of all pairs with an equal plane.
     fn torque_of(&mut self, i: usize, t: Touch, x0: DVec3, law: LawKind, gains: &Gains) -> DVec3 {
         let normal = t.plane.normal_w;
         let force = normal * (t.push * gains.stiffness);
         self.places.clear();
         self.weights.clear();
+        self.sharpness.clear();
         let fade = if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
         for (j, u) in self.scp.touches.iter().enumerate() {
             if i != j && !is_equal(&t, u) {
                 continue;
             }
-            let beside: &[RegionPoint] = if i == j { &self.beside } else { &[] };
-            for p in self.points[u.first..u.end].iter().chain(beside) {
+            let beside = if i == j { u.beside } else { [0; 2] };
+            for p in self.points[u.first..u.end].iter().chain(&self.points[beside[0]..beside[1]]) {
                 if self.places.len() == ROOM {
                     break;
                 }
@@ -203,6 +207,7 @@ impl DepthLaw {
                 let short = p.gap - t.left;
                 let weight = if law == LawKind::Blended { (1.0 - short / fade).clamp(0.0, 1.0) } else { 1.0 };
                 self.weights.push(weight);
+                self.sharpness.push(f64::from(p.sharpness));
             }
         }
         if law == LawKind::Paper {
@@ -215,7 +220,7 @@ impl DepthLaw {
             }
         }
         if law == LawKind::Blended {
-            self.shares.spread(&self.places, normal, &mut self.weights, &mut self.order);
+            self.shares.spread(&self.places, normal, &mut self.weights, &self.sharpness, &mut self.order);
         }
         let p = nearest_point(&self.places, &self.weights, &mut self.order, x0);
         force.cross(x0 - p)

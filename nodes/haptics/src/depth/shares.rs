@@ -16,12 +16,19 @@ pub(crate) struct Shares {
     ring: Vec<u16>,
     /// How much of a corner each of them is, 0 to 1.
     corner: Vec<f64>,
+    /// Of the contacts.
+    weights: Vec<f64>,
     capacity: Vec<f64>,
 }
 
 impl Shares {
     pub fn new(room: usize) -> Self {
-        Self { ring: Vec::with_capacity(room), corner: Vec::with_capacity(room), capacity: Vec::with_capacity(room) }
+        Self {
+            ring: Vec::with_capacity(room),
+            corner: Vec::with_capacity(room),
+            weights: Vec::with_capacity(room),
+            capacity: Vec::with_capacity(room),
+        }
     }
 
     /// Turns the weights (0 to 1) of the contacts at `points`, in one plane with this normal, into capacities that do not depend on
@@ -31,17 +38,44 @@ impl Shares {
     /// Layer by layer: of the weights between `s` and `s + ds` go to contact k, of those that weigh more than `s`, `ds corner(k) /
     /// max(1, sum_j near(k, j) corner(j))`. Here `corner` is the angle by which the border of their convex hull turns at the
     /// contact, from nought (within the hull, or on a side) to 1 for [`CORNER`] and more, and `near` falls linearly from 1 to 0 at
-    /// a tenth of the hull's extent. A lone heaviest contact of weight 1 keeps it, and the total stays at least the largest weight.
+    /// a tenth of the hull's extent. Blunt contacts (`sharpness` less than 1) weigh less by as much, but in the layers that would
+    /// then be empty. A lone heaviest contact of weight 1 keeps it, and the total stays at least the largest weight.
     /// `order` is scratch of at least the same length.
-    pub fn spread(&mut self, points: &[DVec3], normal: DVec3, weights: &mut [f64], order: &mut [u16]) {
-        let n = points.len();
-        let order = &mut order[..n];
+    pub fn spread(
+        &mut self,
+        points: &[DVec3],
+        normal: DVec3,
+        weights: &mut [f64],
+        sharpness: &[f64],
+        order: &mut [u16],
+    ) {
+        self.capacity.clear();
+        self.capacity.resize(points.len(), 0.0);
+        let most = weights.iter().copied().fold(0.0, f64::max);
+        self.weights.clear();
+        self.weights.extend(weights.iter().zip(sharpness).map(|(w, s)| w * s));
+        let sharp = self.weights.iter().copied().fold(0.0, f64::max);
+        self.share(points, normal, 0.0, order);
+        if sharp < most {
+            self.weights.copy_from_slice(weights);
+            self.share(points, normal, sharp, order);
+        }
+        // Rounding alone lets a hull of corners that lie in one place turn by less than it must.
+        let total: f64 = self.capacity.iter().sum();
+        if let Some(heaviest) = weights.iter().position(|w| *w == most) {
+            self.capacity[heaviest] += (most - total).max(0.0);
+        }
+        weights.copy_from_slice(&self.capacity);
+    }
+
+    /// Shares out the layers of the scratch weights above `least`.
+    fn share(&mut self, points: &[DVec3], normal: DVec3, least: f64, order: &mut [u16]) {
         let mut count = 0;
-        for (i, w) in weights.iter().enumerate() {
-            if *w > 0.0 {
+        for (i, w) in self.weights.iter().enumerate() {
+            if *w > least {
                 // Insertion sort, heaviest first: a dozen points, no allocation.
                 let mut j = count;
-                while j > 0 && weights[order[j - 1] as usize] < *w {
+                while j > 0 && self.weights[order[j - 1] as usize] < *w {
                     order[j] = order[j - 1];
                     j -= 1;
                 }
@@ -51,26 +85,18 @@ impl Shares {
         }
         let order = &order[..count];
         self.ring.clear();
-        self.capacity.clear();
-        self.capacity.resize(n, 0.0);
         let from_first = |k: &u16| points[*k as usize].distance(points[order[0] as usize]);
         let same = SAME_PLACE * order.iter().map(from_first).fold(0.0, f64::max);
         for (i, k) in order.iter().enumerate() {
             if self.ring.iter().all(|m| points[*m as usize].distance(points[*k as usize]) > same) {
                 self.widen(points, normal, *k);
             }
-            let lighter = order.get(i + 1).map_or(0.0, |m| weights[*m as usize]);
-            let layer = weights[*k as usize] - lighter;
+            let lighter = order.get(i + 1).map_or(least, |m| self.weights[*m as usize]);
+            let layer = self.weights[*k as usize] - lighter;
             if layer > 0.0 {
                 self.share_out(points, normal, layer);
             }
         }
-        // Rounding alone lets a hull of corners that lie in one place turn by less than it must.
-        if let Some(heaviest) = order.first().map(|k| *k as usize) {
-            let total: f64 = self.capacity.iter().sum();
-            self.capacity[heaviest] += (weights[heaviest] - total).max(0.0);
-        }
-        weights.copy_from_slice(&self.capacity);
     }
 
     /// Takes one more contact into the hull.
@@ -114,7 +140,7 @@ impl Shares {
 
     /// Gives each corner of the hull its part of a layer.
     fn share_out(&mut self, points: &[DVec3], normal: DVec3, layer: f64) {
-        let Self { ring, corner, capacity } = self;
+        let Self { ring, corner, capacity, .. } = self;
         let n = ring.len();
         let at = |i: usize| points[ring[i] as usize];
         corner.clear();
@@ -154,7 +180,7 @@ mod tests {
 
     fn spread(points: &[DVec3], weights: &[f64]) -> Vec<f64> {
         let mut w = weights.to_vec();
-        Shares::new(16).spread(points, DVec3::Z, &mut w, &mut [0; 16]);
+        Shares::new(16).spread(points, DVec3::Z, &mut w, &[1.0; 16][..points.len()], &mut [0; 16]);
         w
     }
 

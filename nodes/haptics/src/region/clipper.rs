@@ -17,13 +17,19 @@ pub(crate) struct Clipper {
     cuts: Vec<bool>,
     /// Of each edge of A's face, which leaves the vertex of the same index.
     spans: Vec<Span>,
+    /// The pairs of faces of the region, in the order in which they were come by.
     pairs: Vec<(FaceId, FaceId)>,
+    /// The same of other pairs of bodies.
+    others: Vec<(Other, FaceId, FaceId)>,
 }
+
+/// Which of the other pairs of bodies that were sensed; none for the pair in hand.
+type Other = Option<u32>;
 
 /// Normals that differ by less, radians, bound one motion.
 const ONE_DIRECTION: f64 = 1e-4;
 /// Most pairs of faces clipped for one contact.
-const MAX_PAIRS: usize = 8;
+const MAX_PAIRS: usize = 48;
 
 impl Clipper {
     /// Room for the largest faces of the world.
@@ -36,6 +42,7 @@ impl Clipper {
             cuts: Vec::with_capacity(sides),
             spans: Vec::with_capacity(room),
             pairs: Vec::with_capacity(MAX_PAIRS),
+            others: Vec::with_capacity(MAX_PAIRS),
         }
     }
 
@@ -48,8 +55,25 @@ impl Clipper {
         // Near's own contact first, at its exact place, when its features face each other.
         let own = if scope.near_felt { facing_point(pair, near, own_tolerance(pair)) } else { None };
         if let Some(point_w) = own.filter(|_| near.distance <= scope.reach) {
-            push(RegionPoint::of(near, point_w), (same, !scope.along_near), [first; 2], out);
+            let sharpness = if scope.wide { pair.solids.sharpness(pair.part, pair.piece, near.contact) } else { 1.0 };
+            let found = RegionPoint { sharpness, ..RegionPoint::of(near, point_w) };
+            push(found, (same, !scope.along_near), [first; 2], out);
         }
+        self.start(pair, near, scope);
+        let known = own.map(|_| near.contact);
+        let mut pairs = std::mem::take(&mut self.pairs);
+        let mut k = 0;
+        while let Some(found) = pairs.get(k) {
+            if let Some(faces) = FacePair::new(pair, *found, near.normal_w, scope) {
+                self.faces(&faces, known, first, out, |f| keep(&mut pairs, f));
+            }
+            k += 1;
+        }
+        self.pairs = pairs;
+    }
+
+    /// Takes the pairs of faces at Near's features, from which the region goes on to others.
+    pub fn start(&mut self, pair: &Pair<'_>, near: &CFace, scope: &Scope) {
         self.pairs.clear();
         if scope.wide {
             facing_pairs(pair, near, &mut self.pairs);
@@ -59,16 +83,11 @@ impl Clipper {
                 pairs_along_edges(pair, near, scope.reach, &mut self.pairs);
             }
         }
-        let known = own.map(|_| near.contact);
-        for k in 0..self.pairs.len() {
-            if let Some(faces) = FacePair::new(pair, self.pairs[k], near.normal_w, scope) {
-                self.faces(&faces, known, first, out);
-            }
-        }
     }
 
-    /// Appends the contacts of the region of `near` that belong to other pairs: where the faces that [`Clipper::region`] finds (with
-    /// a wide scope) go on in other pieces of their bodies, as one plane. Only the pairs in `others` are looked at.
+    /// Appends the contacts of the region of `near` that belong to other pairs of bodies: where the faces of the last
+    /// [`Clipper::region`] (or [`Clipper::start`], where one contact is all of it) go on in other pieces of their bodies, as one
+    /// plane, and from there to others. Only the pairs in `others` are looked at.
     pub fn beside(
         &mut self,
         pair: &Pair<'_>,
@@ -78,30 +97,51 @@ impl Clipper {
         out: &mut Vec<RegionPoint>,
     ) {
         let first = out.len();
-        self.pairs.clear();
-        facing_pairs(pair, near, &mut self.pairs);
-        for s in others {
-            let other = Pair::of(pair.solids, s, pair.placed);
-            if (other.part, other.piece) == (pair.part, pair.piece) {
-                continue;
+        let solids = pair.solids;
+        let mut found = std::mem::take(&mut self.others);
+        found.clear();
+        found.extend(self.pairs.iter().map(|(a, b)| (None, *a, *b)));
+        let mut k = 0;
+        while let Some(&(other, face_a, face_b)) = found.get(k) {
+            k += 1;
+            let here = other.map_or(*pair, |s| Pair::of(solids, &others[s as usize], pair.placed));
+            if other.is_some()
+                && let Some(faces) = FacePair::new(&here, (face_a, face_b), near.normal_w, scope)
+            {
+                self.faces(&faces, None, first, out, |(a, b)| keep(&mut found, (other, a, b)));
             }
-            for k in 0..self.pairs.len() {
-                let (face_a, face_b) = self.pairs[k];
-                let flush_a = pair.solids.flush_a(pair.part, face_a, other.part);
-                let faces = flush_a.zip(pair.solids.flush_b(pair.piece, face_b, other.piece));
-                if let Some(faces) = faces.and_then(|f| FacePair::new(&other, f, near.normal_w, scope)) {
-                    self.faces(&faces, None, first, out);
+            for (s, there) in others.iter().enumerate() {
+                let (part, piece) = (there.part as usize, there.piece as usize);
+                if (part, piece) != (here.part, here.piece)
+                    && (part, piece) != (pair.part, pair.piece)
+                    && let Some(a) = solids.flush_a(here.part, face_a, part)
+                    && let Some(b) = solids.flush_b(here.piece, face_b, piece)
+                {
+                    keep(&mut found, (Some(s as u32), a, b));
                 }
             }
         }
+        self.others = found;
     }
 
     /// Appends the contacts between one face of each body, but for the one that is known: the corners of the region in which they
     /// lie over each other.
-    fn faces(&mut self, faces: &FacePair<'_>, known: Option<BasicContact>, first: usize, out: &mut Vec<RegionPoint>) {
+    /// Gives `go_on` the pairs of faces in which the region goes on.
+    fn faces(
+        &mut self,
+        faces: &FacePair<'_>,
+        known: Option<BasicContact>,
+        first: usize,
+        out: &mut Vec<RegionPoint>,
+        mut go_on: impl FnMut((FaceId, FaceId)),
+    ) {
         let same = same_place(&faces.pair);
         let ring = out.len();
+        let goes_on = faces.may_go_on();
         let mut add = |corner: Corner, point: DVec3| {
+            if goes_on {
+                faces.each_beyond(corner, point, same, &mut go_on);
+            }
             if let Some(found) = faces.contact(corner, point).filter(|p| known != Some(p.contact)) {
                 push(found, (same, !faces.scope.along_near), [first, ring], out);
             }
@@ -119,6 +159,12 @@ impl Clipper {
         }
         if faces.may_look_past() {
             self.past_joints(faces, same, &mut add);
+        }
+        if faces.scope.wide {
+            let Pair { solids, part, piece, .. } = faces.pair;
+            for p in &mut out[ring..] {
+                p.sharpness = solids.sharpness(part, piece, p.contact);
+            }
         }
     }
 
@@ -200,5 +246,12 @@ fn push(p: RegionPoint, (same, apart): (f64, bool), [first, ring]: [usize; 2], o
     };
     if !known() {
         push_within(out, p);
+    }
+}
+
+/// Keeps what is new if there is room.
+fn keep<T: PartialEq>(list: &mut Vec<T>, new: T) {
+    if list.len() < list.capacity() && !list.contains(&new) {
+        list.push(new);
     }
 }

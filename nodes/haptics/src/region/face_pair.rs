@@ -1,7 +1,8 @@
 //! A face of A laid on a face of B: where they lie over each other, and what takes place there.
 
+use crate::region::facing_faces::FACING;
 use crate::region::point::{PARALLEL_EDGES, RegionPoint, Scope};
-use crate::solid::Pair;
+use crate::solid::{Pair, is_same_face};
 use cspace::{BasicContact, EdgeId, FaceId, Plane, VertexId};
 use spatial::DVec3;
 
@@ -104,6 +105,63 @@ impl<'a> FacePair<'a> {
         self.pair.a.face_sides(self.face_a).iter().all(|s| s.signed_distance(seen) < -same).then_some(point)
     }
 
+    /// Whether the contact region may go on in other faces beside these: any if the scope is wide, else facets of the same ones.
+    pub fn may_go_on(&self) -> bool {
+        let Pair { solids, part, piece, .. } = self.pair;
+        self.scope.wide
+            || self.scope.along_near
+                && (solids.moving.is_facet(part, self.face_a) || solids.fixed.is_facet(piece, self.face_b))
+    }
+
+    /// Gives `each` the pairs of faces that meet these two at a corner, from the point of A's face there: over the corner's sides. A
+    /// convex gap grows from its least place on, so that what lies in reach hangs together by corners that do.
+    pub fn each_beyond(&self, corner: Corner, point: DVec3, same: f64, mut each: impl FnMut((FaceId, FaceId))) {
+        let height = self.height(point);
+        if height > self.highest {
+            return;
+        }
+        let Pair { solids, a, b, part, piece, placed } = self.pair;
+        let beyond_a = |side: usize| {
+            let face_a = a.face_faces(self.face_a)[side];
+            let goes_on = if self.scope.wide {
+                (placed.r * a.face_plane(face_a).normal).dot(self.plane_b.normal) < FACING
+            } else {
+                is_same_face(a, self.face_a, face_a)
+            };
+            (goes_on && !solids.is_internal_a(part, face_a)).then_some((face_a, self.face_b))
+        };
+        let beyond_b = |side: usize| {
+            let face_b = b.face_faces(self.face_b)[side];
+            let goes_on = if self.scope.wide {
+                self.normal_a.dot(b.face_plane(face_b).normal) > -FACING
+            } else {
+                is_same_face(b, self.face_b, face_b)
+            };
+            (goes_on && !solids.is_internal_b(piece, face_b)).then_some((self.face_a, face_b))
+        };
+        let before = |i: usize, n: usize| if i == 0 { n - 1 } else { i - 1 };
+        match corner {
+            Corner::OfA(i) => {
+                [before(i, self.ring_a().len()), i].into_iter().filter_map(beyond_a).for_each(&mut each);
+                let foot = self.foot(point);
+                let sides = self.sides_b().iter().enumerate();
+                sides
+                    .filter(|(_, s)| s.signed_distance(foot) >= -2.0 * same)
+                    .filter_map(|(j, _)| beyond_b(j))
+                    .for_each(each);
+            }
+            Corner::OfB(j) => [before(j, self.sides_b().len()), j].into_iter().filter_map(beyond_b).for_each(each),
+            Corner::Crossing(i, j) => {
+                beyond_a(i).into_iter().for_each(&mut each);
+                let n = self.sides_b().len();
+                let foot = self.foot(point);
+                // An edge of A may pass over a vertex of B.
+                let meets = |k: &usize| *k == j || self.sides_b()[*k].signed_distance(foot) >= -2.0 * same;
+                [before(j, n), j, (j + 1) % n].into_iter().filter(meets).filter_map(beyond_b).for_each(each);
+            }
+        }
+    }
+
     /// Whether the scope asks for vertices that stand past a joint, and there are joints where they may.
     pub fn may_look_past(&self) -> bool {
         !self.scope.along_near && self.pair.solids.is_hollow
@@ -179,7 +237,7 @@ impl<'a> FacePair<'a> {
             }
         };
         let gap = if self.scope.along_near { height / self.slope } else { gap };
-        (gap <= self.scope.reach).then_some(RegionPoint { contact, point_w, normal_w, gap })
+        (gap <= self.scope.reach).then_some(RegionPoint { contact, sharpness: 1.0, point_w, normal_w, gap })
     }
 
     /// Whether A's face goes on in another part of A beyond a side that the corner lies on.

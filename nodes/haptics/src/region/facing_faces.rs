@@ -4,7 +4,7 @@ use crate::solid::{Cover, Pair};
 use cspace::{BasicContact, CFace, FaceId};
 
 /// The cosine between outward normals up to which faces count as facing each other.
-const FACING: f64 = -0.5;
+pub(crate) const FACING: f64 = -0.5;
 
 /// The pair of faces, one of each body, at the features of `near` that are most nearly antiparallel.
 pub(crate) fn most_parallel(pair: &Pair<'_>, near: &CFace) -> Option<(FaceId, FaceId)> {

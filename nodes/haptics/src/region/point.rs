@@ -13,6 +13,8 @@ const SAME_POINT: f64 = 1e-8;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RegionPoint {
     pub contact: BasicContact,
+    /// How much of a contact it is, 0 to 1, where the scope is wide: see [`crate::solid::Solids::sharpness`].
+    pub sharpness: f32,
     /// App_k, metres, W: on the surface of B.
     pub point_w: DVec3,
     /// Unit, axes of W, from B to A.
@@ -24,7 +26,7 @@ pub(crate) struct RegionPoint {
 impl RegionPoint {
     /// The contact of a plane itself, at `point_w` on B.
     pub fn of(plane: &CFace, point_w: DVec3) -> Self {
-        Self { contact: plane.contact, point_w, normal_w: plane.normal_w, gap: plane.distance }
+        Self { contact: plane.contact, sharpness: 1.0, point_w, normal_w: plane.normal_w, gap: plane.distance }
     }
 
     /// A crossing of edges (unit directions, axes of W) whose place on A has moved by `motion`: the place slides along B's edge,
@@ -48,7 +50,7 @@ pub(crate) struct Scope {
     pub reach: f64,
     /// Near's own contact, at its exact place.
     pub near_felt: bool,
-    /// Not only of the two most nearly parallel faces, but of all at Near's features that lean less than 60 degrees.
+    /// Not only of the two most nearly parallel faces, but of all that lean less than 60 degrees and come into reach.
     pub wide: bool,
     /// The faces are laid on each other along Near's normal, in which the crossing of Near's edges is exact; else along the
     /// normal of B's face, in which A's vertices touch it.

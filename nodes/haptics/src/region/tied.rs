@@ -135,6 +135,9 @@ fn along_edge(
     let Some(faces) = most_parallel(pair, near).and_then(|f| FacePair::new(pair, f, near.normal_w, scope)) else {
         return false;
     };
+    if faces.may_go_on() {
+        return false;
+    }
     let Some(i) = faces.edges_a().iter().position(|e| *e == edge) else { return false };
     let ring = faces.ring_a();
     let next = if i + 1 == ring.len() { 0 } else { i + 1 };

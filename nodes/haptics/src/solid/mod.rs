@@ -8,6 +8,7 @@ mod pair;
 mod placed;
 mod seams;
 mod sense;
+mod sharpness;
 mod solids;
 
 pub(crate) use cover::Cover;
@@ -15,5 +16,6 @@ pub(crate) use facing::facing_point;
 pub(crate) use hollow::each_hollow_end;
 pub(crate) use pair::{Covered, Pair, SAME, TURN};
 pub(crate) use placed::Placed;
+pub(crate) use seams::is_same_face;
 pub(crate) use sense::{Sense, Sensed};
 pub(crate) use solids::Solids;

@@ -32,6 +32,8 @@ pub(crate) struct Seams {
     sides: Vec<Vec<Vec<Cover>>>,
     /// For each piece and face whether it ends at an obtuse hollow joint somewhere.
     hollow: Vec<Vec<bool>>,
+    /// For each piece and face whether it goes on beyond some side as another face of the piece, but for less than [`FALL`].
+    facets: Vec<Vec<bool>>,
     /// For each piece and vertex the neighbours that the vertex belongs to.
     at_vertex: Vec<Vec<Vec<u32>>>,
     /// For each piece and edge the neighbours that some of the edge's points may belong to.
@@ -73,6 +75,8 @@ impl Seams {
             })
             .collect();
         let flush = flush_faces(&pieces, &cover, tolerance);
+        let is_facet = |p: &Polyhedron, f| p.face_faces(f).iter().any(|g| is_same_face(p, f, *g));
+        let facets = pieces.iter().map(|p| p.faces().map(|f| is_facet(p, f)).collect()).collect();
         let mut seams = Self {
             pieces,
             neighbors,
@@ -80,6 +84,7 @@ impl Seams {
             live_edges: Vec::new(),
             sides: Vec::new(),
             hollow: Vec::new(),
+            facets,
             at_vertex: Vec::new(),
             at_edge: Vec::new(),
             over_face: Vec::new(),
@@ -214,6 +219,11 @@ impl Seams {
         }
     }
 
+    /// Whether the face is one of several facets that are one face but for a bend that meshes have: see [`is_same_face`].
+    pub fn is_facet(&self, piece: usize, face: FaceId) -> bool {
+        self.facets[piece][face.index()]
+    }
+
     /// Whether the surface bends up by less than a right angle at some side of the face.
     pub fn is_hollow(&self, piece: usize, face: FaceId) -> bool {
         self.hollow[piece][face.index()]
@@ -300,6 +310,12 @@ fn flush_faces(pieces: &[Arc<Polyhedron>], cover: &[Vec<Cover>], tolerance: f64)
         }
     }
     flush
+}
+
+/// Whether two faces that share an edge bend there by so little that they are one face of the body, rounded or a little bulged.
+pub(crate) fn is_same_face(body: &Polyhedron, face: FaceId, other: FaceId) -> bool {
+    let [n, m] = [face, other].map(|f| body.face_plane(f).normal);
+    n.distance_squared(m) <= FALL * FALL
 }
 
 /// Where the side of a face begins and ends.

@@ -1,6 +1,7 @@
 //! The two assemblies in contact, with their seams.
 
 use crate::solid::seams::Seams;
+use crate::solid::sharpness::Sharpness;
 use crate::solid::{Cover, Placed};
 use cspace::{BasicContact, FaceId, Polyhedron, World};
 use spatial::DVec3;
@@ -14,6 +15,9 @@ pub(crate) struct Solids {
     pub fixed: Seams,
     /// Whether either has an obtuse hollow joint anywhere.
     pub is_hollow: bool,
+    /// Of the parts and of the pieces.
+    sharp_moving: Vec<Sharpness>,
+    sharp_fixed: Vec<Sharpness>,
 }
 
 impl Solids {
@@ -21,7 +25,9 @@ impl Solids {
         let moving = Seams::new(world.moving.clone());
         let fixed = Seams::new(world.fixed.iter().map(|p| p.polyhedron.clone()).collect());
         let is_hollow = moving.has_hollow() || fixed.has_hollow();
-        Self { world, moving, fixed, is_hollow }
+        let sharp_moving = world.moving.iter().map(|p| Sharpness::of(p)).collect();
+        let sharp_fixed = world.fixed.iter().map(|p| Sharpness::of(&p.polyhedron)).collect();
+        Self { world, moving, fixed, is_hollow, sharp_moving, sharp_fixed }
     }
 
     pub fn part(&self, part: usize) -> &Polyhedron {
@@ -50,6 +56,16 @@ impl Solids {
     /// See [`Solids::is_internal_a`].
     pub fn is_internal_b(&self, piece: usize, face: FaceId) -> bool {
         self.fixed.cover(piece, face) == Cover::Internal
+    }
+
+    /// How much of a contact a basic contact is, 0 to 1: a vertex by its own sharpness, a crossing by that of the blunter edge.
+    pub fn sharpness(&self, part: usize, piece: usize, contact: BasicContact) -> f32 {
+        let (a, b) = (&self.sharp_moving[part], &self.sharp_fixed[piece]);
+        match contact {
+            BasicContact::TypeA { vertex_b, .. } => b.of_vertex(vertex_b),
+            BasicContact::TypeB { vertex_a, .. } => a.of_vertex(vertex_a),
+            BasicContact::TypeC { edge_a, edge_b } => a.of_edge(edge_a).min(b.of_edge(edge_b)),
+        }
     }
 
     /// Whether the piece's face goes on beyond its side `side` at `point_w`: see [`Seams::goes_on`].

@@ -197,7 +197,7 @@ impl Scp {
                 return None;
             }
             t.plane = if is_near { s.near } else { pair.applicable_plane(t.plane.contact)? };
-            (t.first, t.end, t.tie) = (0, 0, tie_of(solids, t.part));
+            (t.first, t.end, t.beside, t.tie) = (0, 0, [0; 2], tie_of(solids, t.part));
             self.rows.push(row(&t.plane));
         }
         Some(())

@@ -34,6 +34,8 @@ pub(crate) struct Touch {
     pub plane: CFace,
     pub first: usize,
     pub end: usize,
+    /// From where to where those of its region follow that belong to other pairs.
+    pub beside: [usize; 2],
     pub tie: f64,
     /// Its signed distance where its contacts are looked for, metres.
     pub left: f64,
@@ -388,6 +390,7 @@ impl Scp {
             plane,
             first: 0,
             end: 0,
+            beside: [0; 2],
             tie: tie_of(solids, part),
             left: 0.0,
             push: 0.0,
