@@ -77,7 +77,7 @@ impl RenderLaw for Renderer {
                 self.proxy.reset();
             }
             let seeded = self.proxy.follow(&self.solids, hip, gains, dt);
-            let (wrench, energy) = self.proxy.pull(hip, gains);
+            let (wrench, energy) = self.proxy.pull(gains);
             let (formation, dropped) = self.proxy.view.formation();
             let depth = self.depth_law.depth(&self.solids, &self.sense.pairs, hip);
             LawOutput {

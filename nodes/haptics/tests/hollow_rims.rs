@@ -49,18 +49,22 @@ fn lying_cylinder() -> Polyhedron {
 
 /// The most energy that came from nowhere in one tick, J, of the most that the coupling held; from the second tick on.
 fn created(w: &Arc<World>, path: &dyn Fn(f64) -> Pose, n: u32) -> (f64, f64) {
-    let gains = Gains { law: LawKind::Proxy, proxy_speed: f64::INFINITY, ..Gains::default() };
+    created_with(&Gains { law: LawKind::Proxy, proxy_speed: f64::INFINITY, ..Gains::default() }, w, path, n)
+}
+
+/// The same with these gains.
+fn created_with(gains: &Gains, w: &Arc<World>, path: &dyn Fn(f64) -> Pose, n: u32) -> (f64, f64) {
     let mut r = Renderer::new(w.clone());
     let first = path(0.0);
     for i in 0..=1000 {
         let above = DVec3::Z * 10e-3 * (1.0 - f64::from(i) / 1e3);
-        r.render(&Pose::new(first.translation + above, first.rotation), &gains, 1e-3);
+        r.render(&Pose::new(first.translation + above, first.rotation), gains, 1e-3);
     }
     let (mut worst, mut most) = (0.0_f64, 0.0_f64);
     let mut last = None;
     for i in 0..=n {
         let p = path(f64::from(i) / f64::from(n));
-        let out = r.render(&p, &gains, 1e-3);
+        let out = r.render(&p, gains, 1e-3);
         if i % 50 == 0 {
             let depth = penetration(w, &out.proxy);
             assert!(depth <= 1e-7, "tick {i}: the proxy is {depth} m deep");
@@ -161,5 +165,45 @@ fn a_plate_led_along_steps_rests_where_one_stands_across_the_midst_of_anothers_e
         let (worst, most) = created(&w, &path, 800);
         assert!(most > 1e-3, "{seed}: in contact ({most} J)");
         assert!(worst < 1e-7, "{seed}: {worst} J from nowhere, of {most} J");
+    }
+}
+
+#[test]
+fn a_peg_without_play_rocks_on_its_hole_and_gets_nothing_from_it() {
+    // Its corners dip in by microns, where a wall's side and its top take turns to hold it.
+    let (outer, inner) = (34.5, 4.5);
+    let walls = vec![
+        cuboid(mm(-30.0, inner, -30.0), mm(30.0, outer, 0.0)),
+        cuboid(mm(-30.0, -outer, -30.0), mm(30.0, -inner, 0.0)),
+        cuboid(mm(inner, -inner, -30.0), mm(outer, inner, 0.0)),
+        cuboid(mm(-outer, -inner, -30.0), mm(-inner, inner, 0.0)),
+    ];
+    let w = world(block(mm(9.0, 9.0, 30.0)), walls);
+    let path = |s: f64| {
+        let i = 2000.0 * s;
+        let turn = DQuat::from_scaled_axis(DVec3::new((i / 90.0).sin(), (i / 110.0).cos(), 0.0) * 0.01);
+        Pose::new(mm(0.1 * (i / 50.0).sin(), 0.1 * (i / 70.0).cos(), 16.5 - 9.0 * (i / 1200.0).min(1.0)), turn)
+    };
+    let (worst, most) = created(&w, &path, 2000);
+    assert!(most > 1e-2, "in contact ({most} J)");
+    assert!(worst < 1e-7, "{worst} J from nowhere, of {most} J");
+}
+
+#[test]
+fn friction_of_a_peg_that_leans_in_a_hole_only_takes() {
+    let gains = Gains { friction_static: 0.4, friction_kinetic: 0.4, proxy_speed: f64::INFINITY, ..Gains::default() };
+    for (sides, seed) in [(12, 1), (24, 2), (24, 20), (8, 30)] {
+        let mut rng = random::rng(seed);
+        let mut u = |most: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(-most..most)));
+        let w = world(block(mm(6.0, 6.0, 30.0)), hole(sides, 10.0));
+        let (aside, drift, lean, sway) = (u(1.0), u(0.4e-3), u(0.25), u(0.1));
+        let aside = DVec3::new(aside.x, aside.y, 0.0).normalize() * 8e-3;
+        let path = |s: f64| {
+            let place = aside + aside.cross(DVec3::Z) * 0.3 * s + drift * s;
+            Pose::new(place, DQuat::from_scaled_axis(lean + sway * (3.0 * s).sin()))
+        };
+        let (worst, most) = created_with(&gains, &w, &path, 800);
+        assert!(most > 1e-3, "{sides} sides: in contact ({most} J)");
+        assert!(worst < 5e-8, "{sides} sides: {worst} J from nowhere, of {most} J");
     }
 }

@@ -28,6 +28,12 @@ impl Metric {
         (metric, Step { dtheta: goal.dtheta * factor, ..*goal })
     }
 
+    /// The coupling's energy when it is stretched so far, J.
+    pub fn energy(&self, stretch: &Step) -> f64 {
+        let square = |v: DVec3, per_root: f64| v.length_squared() / (per_root * per_root);
+        0.5 * (square(stretch.dp, self.per_root_f) + square(stretch.dtheta, self.per_root_r))
+    }
+
     pub fn row(&self, normal: DVec3, moment: DVec3, offset: f64, goal: &Step, equality: bool) -> Row<6> {
         let (n, m) = (normal * self.per_root_f, moment * self.per_root_r);
         let offset = offset - normal.dot(goal.dp) - moment.dot(goal.dtheta);

@@ -5,6 +5,7 @@
 
 mod friction;
 mod metric;
+mod safe;
 mod steadying;
 mod step;
 mod view;
@@ -16,6 +17,7 @@ use crate::Gains;
 use crate::projection::{Projection, Row};
 use crate::solid::{Placed, Solids};
 use metric::{Metric, contact_rows};
+use safe::Safe;
 use spatial::{DVec3, Pose, Wrench};
 use steadying::Steadying;
 use step::Step;
@@ -50,6 +52,8 @@ pub(crate) struct Proxy {
     friction: Friction,
     steadying: Steadying,
     last_hip: Option<Pose>,
+    /// From the hand to the proxy at the end of the tick.
+    stretch: Step,
     /// How far the proxy looks around in this tick, metres.
     sight: f64,
     /// Motion since the last look, metres.
@@ -66,6 +70,7 @@ impl Proxy {
             friction,
             steadying: Steadying::default(),
             last_hip: None,
+            stretch: Step::NONE,
             sight: f64::INFINITY,
             stale: 0.0,
         }
@@ -103,7 +108,6 @@ impl Proxy {
         }
         let metric = Metric::new(gains);
         self.steadying.begin();
-        let safe = self.pose;
         let (sight, mut budget) = match moved {
             // Edge rounding: the proxy may catch up with the hand at no more than the stated speed.
             Some(way) if !jumped => {
@@ -116,14 +120,15 @@ impl Proxy {
         if self.stale > SMALL {
             self.look(solids);
         }
-        let was_safe = self.view.penetration <= PENETRATION;
+        let mut safe = None::<Safe>;
         let mut drag = Wrench::ZERO;
         let mut cut = 0;
         for round in 0..ROUNDS_FAST {
             if round - cut >= ROUNDS {
                 break;
             }
-            let goal = self.goal(hip, &drag, &metric);
+            let to_hand = self.to_hand(hip);
+            let goal = metric.pulled(&to_hand, &drag);
             let mut step = loop {
                 let step = self.solve(&metric, &goal);
                 let step = self.choose(solids, &metric, &goal, step);
@@ -132,12 +137,19 @@ impl Proxy {
                 }
                 self.look_farther(solids);
             };
+            self.keep_best(&mut safe, metric.energy(&to_hand), drag != Wrench::ZERO);
             if round == 0 && self.friction.is_on(gains) {
                 let (metric, goal) = metric.steadied(&self.steadying, &goal);
                 let Self { friction, view, projection, rows, pose, .. } = self;
                 drag = friction.drag(view, projection, rows, &metric, &goal, pose, gains);
-                let goal = self.goal(hip, &drag, &metric);
-                step = self.solve(&metric, &goal);
+                let free = step;
+                step = self.solve(&metric, &metric.pulled(&to_hand, &drag));
+                // Places that are held in turn may push each other: together they only take.
+                let (taken, given) = (free.work(&drag), step.work(&drag));
+                if given > 0.0 {
+                    drag = drag * (taken / (taken - given)).clamp(0.0, 1.0);
+                    step = self.solve(&metric, &metric.pulled(&to_hand, &drag));
+                }
             }
             let way = step.way(lever);
             let limit = self.view.reach.min(budget).min(way * TURN / step.dtheta.length().max(1e-300));
@@ -168,8 +180,9 @@ impl Proxy {
         if self.view.penetration > PENETRATION {
             self.push_out(solids, &metric, 4);
         }
-        if self.view.penetration > PENETRATION && was_safe {
-            self.back_off(solids, &safe);
+        self.stretch = self.stretch_to(hip);
+        if let Some(safe) = safe.filter(|safe| !self.is_no_worse(safe, &metric)) {
+            self.back_off(solids, &safe, hip, &metric);
         }
         jumped
     }
@@ -196,10 +209,9 @@ impl Proxy {
         }
     }
 
-    /// Elastic pull of the coupling on the hand: force (N) and torque (N.m), and its energy (J).
-    pub fn pull(&self, hip: &Pose, gains: &Gains) -> (Wrench, f64) {
-        let dp = self.pose.translation - hip.translation;
-        let dtheta = hip.rotation_to(&self.pose);
+    /// Elastic pull of the coupling on the hand that was followed last: force (N) and torque (N.m), and its energy (J).
+    pub fn pull(&self, gains: &Gains) -> (Wrench, f64) {
+        let Step { dp, dtheta } = self.stretch;
         let wrench = Wrench::new(dp * gains.stiffness, dtheta * gains.rotation_stiffness);
         let energy = 0.5 * (gains.stiffness * dp.length_squared() + gains.rotation_stiffness * dtheta.length_squared());
         (wrench, energy)
@@ -215,10 +227,34 @@ impl Proxy {
         self.look(solids);
     }
 
+    fn stretch_to(&self, hip: &Pose) -> Step {
+        Step { dp: self.pose.translation - hip.translation, dtheta: hip.rotation_to(&self.pose) }
+    }
+
+    fn to_hand(&self, hip: &Pose) -> Step {
+        self.stretch_to(hip).scaled(-1.0)
+    }
+
     /// Where the proxy would go if nothing were in its way: to the hand, but for the drag of friction.
     fn goal(&self, hip: &Pose, drag: &Wrench, metric: &Metric) -> Step {
-        let to_hand = Step { dp: hip.translation - self.pose.translation, dtheta: self.pose.rotation_to(hip) };
-        metric.pulled(&to_hand, drag)
+        metric.pulled(&self.to_hand(hip), drag)
+    }
+
+    /// Remembers the pose if it is free and the best so far. After [`Proxy::solve`]; `energy` is the coupling's there, J.
+    fn keep_best(&self, safe: &mut Option<Safe>, energy: f64, dragged: bool) {
+        if self.view.penetration > PENETRATION {
+            return;
+        }
+        // What it takes to come out of what counts as no penetration.
+        let due = |(k, force): (usize, f64)| self.view.points.get(k).map_or(0.0, |p| force * (-p.gap).max(0.0));
+        let is_clear = self.view.penetration <= VANISHING;
+        let energy = energy + if is_clear { 0.0 } else { self.projection.active().map(due).sum::<f64>() };
+        Safe::keep_best(safe, &self.pose, energy, dragged);
+    }
+
+    /// Whether the proxy is free and the coupling holds no more energy than it may.
+    fn is_no_worse(&self, safe: &Safe, metric: &Metric) -> bool {
+        self.view.penetration <= PENETRATION && metric.energy(&self.stretch) <= safe.most
     }
 
     fn solve(&mut self, metric: &Metric, goal: &Step) -> Step {
@@ -259,7 +295,7 @@ impl Proxy {
             if self.view.penetration <= PENETRATION {
                 return;
             }
-            let stay = Step { dp: DVec3::ZERO, dtheta: DVec3::ZERO };
+            let stay = Step::NONE;
             let mut step = self.solve(metric, &stay);
             if !self.view.is_listed(step.way(self.view.lever)) {
                 self.look_farther(solids);
@@ -273,13 +309,14 @@ impl Proxy {
         }
     }
 
-    /// Back towards the last pose known to be free, until nothing penetrates.
-    fn back_off(&mut self, solids: &Solids, safe: &Pose) {
+    /// Back towards a pose known to be free, until the proxy is free and no worse than there.
+    fn back_off(&mut self, solids: &Solids, safe: &Safe, hip: &Pose, metric: &Metric) {
         let ahead = self.pose;
         for s in [0.5, 0.25, 0.125, 0.0] {
-            self.pose = safe.interpolate(&ahead, s);
+            self.pose = safe.pose.interpolate(&ahead, s);
             self.look(solids);
-            if self.view.penetration <= PENETRATION {
+            self.stretch = self.stretch_to(hip);
+            if self.is_no_worse(safe, metric) {
                 return;
             }
         }
