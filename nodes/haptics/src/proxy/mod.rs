@@ -18,7 +18,7 @@ use crate::projection::{Projection, Row};
 use crate::solid::{Placed, Solids};
 use metric::{Metric, contact_rows};
 use safe::Safe;
-use spatial::{DVec3, Pose, Wrench};
+use spatial::{Pose, Wrench};
 use steadying::Steadying;
 use step::Step;
 use view::{PENETRATION, View};
