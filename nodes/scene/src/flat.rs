@@ -1,32 +1,38 @@
 //! Faces that the digits of a file have bent: a face's triangles, written with six digits, lie in one plane no longer.
 
 use crate::Mesh;
+use crate::digits::left_open;
 use crate::mesh::position_bits;
+use crate::near_hull::near_hull;
 use cspace::{Plane, Polyhedron, PolyhedronError};
-use spatial::{DMat3, DVec3};
+use nalgebra::{DVector, MatrixXx3};
+use spatial::DVec3;
 use std::collections::HashMap;
 
-/// A vertex of a face lies at most this many steps of the file's last digit off its plane: it is rounded itself, by 0.87
-/// at most, and so are those through which the plane was laid.
-const STEPS: f64 = 4.0;
-/// Fewer digits than these are somebody's own numbers, not rounded ones.
-const LEAST_DIGITS: i32 = 5;
 /// Facets as flat as this, of the size, are one face however many digits there are: so much is left of CAD's own arithmetic.
 const LEAST: f64 = 1e-8;
 /// The most that digits may leave open, of the size: where a surface is dented, and where it is convex as it stands.
 const MOST: f64 = 1e-4;
 const MOST_OF_CONVEX: f64 = 1e-6;
+/// Faces whose sides are longer than this many times what the digits leave open are large.
+const LARGE: f64 = 1e3;
+/// A vertex where planes meet is moved no farther than this many times as far as it may lie off one.
+const REACH: f64 = 3.0;
+/// Planes that lean less than this, radians, ask for nothing in the direction that only their difference asks for.
+const PARALLEL: f64 = 3e-5;
+/// Planes meet in a point that lies off none by more than this part of how far it may be moved.
+const EXACT: f64 = 1e-9;
 
 /// The polyhedron of a mesh. Where it is not convex as it stands, its faces are made plane as far as the digits of the
-/// coordinates leave that open, without the slivers that they have made lines of. Vertices and faces count as in the mesh.
+/// coordinates leave that open, without the slivers that they have made lines of; where facets are so small that the digits
+/// decide how they lean, it is the hull. Vertices and faces count as in the mesh.
 ///
 /// # Errors
 /// The mesh is not convex, however the digits are read.
 pub fn polyhedron(mesh: &Mesh) -> Result<Polyhedron, PolyhedronError> {
-    let whole = |m: &Mesh| Polyhedron::from_faces(&m.vertices, &m.faces);
     whole(mesh).or_else(|refused| {
         let sound = mesh.without_collapsed_faces();
-        whole(&sound).or_else(|_| flattened(&sound, MOST).and_then(|m| whole(&m).ok()).ok_or(refused))
+        whole(&sound).or_else(|_| convex_for_its_digits(&sound).and_then(|m| whole(&m).ok()).ok_or(refused))
     })
 }
 
@@ -34,71 +40,111 @@ pub fn polyhedron(mesh: &Mesh) -> Result<Polyhedron, PolyhedronError> {
 /// and of bulging ones contact would know only a facet at a time.
 #[must_use]
 pub fn straightened(mesh: Mesh) -> Mesh {
-    let faces = |m: &Mesh| Polyhedron::from_faces(&m.vertices, &m.faces).map(|p| p.face_count());
+    let faces = |m: &Mesh| whole(m).map(|p| p.face_count());
     let flat = match faces(&mesh) {
-        Err(_) => flattened(&mesh, MOST),
-        Ok(count) => flattened(&mesh, MOST_OF_CONVEX).filter(|m| faces(m).is_ok_and(|flat| flat < count)),
+        Err(_) => convex_for_its_digits(&mesh)
+            .or_else(|| convex_bodies_for_their_digits(&mesh))
+            .or_else(|| flattened(&mesh, MOST, 0.0)),
+        Ok(count) => flattened(&mesh, MOST_OF_CONVEX, 0.0).filter(|m| faces(m).is_ok_and(|flat| flat < count)),
     };
     flat.unwrap_or(mesh)
 }
 
-/// The mesh with faces made plane as far as the digits of its coordinates leave that open, `most` of the size at most, its
-/// vertices and faces in the same order; `None` where they do not, or where it cannot be done.
-fn flattened(mesh: &Mesh, most: f64) -> Option<Mesh> {
+/// The same of a mesh of several bodies, if all are convex for their digits and one at least was not as it stood.
+fn convex_bodies_for_their_digits(mesh: &Mesh) -> Option<Mesh> {
+    let bodies = mesh.components();
+    if bodies.len() < 2 || bodies.iter().all(|body| whole(body).is_ok()) {
+        return None;
+    }
+    let mut all = Mesh::default();
+    for body in bodies {
+        let convex = if whole(&body).is_ok() { Some(body) } else { convex_for_its_digits(&body) };
+        all.append(&convex?);
+    }
+    Some(all)
+}
+
+fn whole(mesh: &Mesh) -> Result<Polyhedron, PolyhedronError> {
+    Polyhedron::from_faces(&mesh.vertices, &mesh.faces)
+}
+
+/// The mesh made convex as far as its digits leave that open: with plane faces, or as the hull of what that gives.
+fn convex_for_its_digits(mesh: &Mesh) -> Option<Mesh> {
+    let open = tolerance(mesh, MOST);
+    let flat = flattened(mesh, MOST, 0.0);
+    if let Some(flat) = flat.as_ref().filter(|flat| whole(flat).is_ok()) {
+        return Some(flat.clone());
+    }
+    // Where facets are so small that many lie in one plane by chance, only large faces are made plane, or none.
+    let large = flattened(mesh, MOST, LARGE * open);
+    large
+        .iter()
+        .chain([mesh])
+        .find_map(|m| near_hull(m, open).filter(|hull| whole(hull).is_ok_and(|body| is_near(mesh, &body, open))))
+}
+
+/// Whether all vertices of the mesh lie within `open` metres of the body's surface.
+fn is_near(mesh: &Mesh, body: &Polyhedron, open: f64) -> bool {
+    mesh.vertices.iter().all(|v| body.contains(*v, open) && !body.contains(*v, -open))
+}
+
+/// How far vertices may be moved, metres: `most` of the size at most.
+fn tolerance(mesh: &Mesh, most: f64) -> f64 {
     let size = mesh.size();
-    let digits = last_digit(&mesh.vertices).map_or(0.0, |step| STEPS * step);
-    let tolerance = digits.clamp(LEAST * size, most * size);
+    left_open(mesh).unwrap_or(0.0).clamp(LEAST * size, most * size)
+}
+
+/// The mesh with faces made plane as far as the digits of its coordinates leave that open, `most` of the size at most, its
+/// vertices and faces in the same order; `None` where that moves nothing. Faces smaller than a square with sides of `least`
+/// are left as they are.
+fn flattened(mesh: &Mesh, most: f64, least: f64) -> Option<Mesh> {
+    let tolerance = tolerance(mesh, most);
     let welded = mesh.welded();
-    let faces = Faces::of(&welded, tolerance)?;
+    let faces = Faces::of(&welded, tolerance, least)?;
     let mut bent = 0.0f64;
     let mut moved_from = HashMap::with_capacity(welded.vertices.len());
     for (vertex, planes) in welded.vertices.iter().zip(faces.through_vertices(&welded)) {
-        let moved = nearest_on_all(*vertex, &planes);
-        let way = moved.distance(*vertex);
-        // Planes that are nearly parallel meet far away.
-        if !(way <= 3.0 * tolerance) {
-            return None;
-        }
-        bent = bent.max(way);
+        let moved = moved_onto(*vertex, &planes, REACH * tolerance);
+        bent = bent.max(moved.distance(*vertex));
         moved_from.insert(position_bits(*vertex), moved);
     }
     let vertices = mesh.vertices.iter().filter_map(|v| moved_from.get(&position_bits(*v)).copied()).collect();
-    (bent > 1e-12 * size).then(|| Mesh { vertices, faces: mesh.faces.clone() })
+    (bent > 1e-12 * mesh.size()).then(|| Mesh { vertices, faces: mesh.faces.clone() })
 }
 
-/// The step of the last digit that the coordinates were written with, in their unit; `None` where they are too short to
-/// be rounded ones.
-fn last_digit(vertices: &[DVec3]) -> Option<f64> {
-    let numbers = || vertices.iter().flat_map(|v| v.to_array()).filter(|x| *x != 0.0);
-    let largest = numbers().fold(0.0, |most: f64, x| most.max(x.abs()));
-    // Single precision, written in binary or with the nine digits that it takes.
-    if numbers().all(|x| (x - f64::from(x as f32)).abs() <= 5.1e-9 * x.abs()) {
-        return Some(largest * f64::from(f32::EPSILON));
+/// The point nearest to `p` that lies in all planes, or least far from them, if that is within `reach` metres; else in as many,
+/// the largest faces' first, as meet there: planes that are nearly parallel meet far away.
+fn moved_onto(p: DVec3, planes: &[Plane], reach: f64) -> DVec3 {
+    let all = nearest_on_all(p, planes);
+    if all.distance(p) <= reach {
+        return all;
     }
-    let (mut decimals, mut digits) = (i32::MIN, 0);
-    for x in numbers() {
-        // `1.2345e-2`: the shortest text that reads back.
-        let text = format!("{:e}", x.abs());
-        let (mantissa, exponent) = text.split_once('e')?;
-        let written = mantissa.len() as i32 - i32::from(mantissa.contains('.'));
-        digits = digits.max(written);
-        decimals = decimals.max(written - 1 - exponent.parse::<i32>().ok()?);
+    let (mut kept, mut at) = (Vec::with_capacity(planes.len()), p);
+    for plane in planes {
+        kept.push(*plane);
+        let moved = nearest_on_all(p, &kept);
+        let meet = kept.iter().all(|plane| plane.signed_distance(moved).abs() <= EXACT * reach);
+        if meet && moved.distance(p) <= reach {
+            at = moved;
+        } else {
+            kept.pop();
+        }
     }
-    let leading = largest.log10().floor() as i32;
-    // Files with a fixed number of decimals and files with a fixed number of digits: the coarser is what they agree on.
-    (digits >= LEAST_DIGITS).then(|| 10f64.powi((-decimals).max(leading + 1 - digits)))
+    at
 }
 
 /// Which facets of the file make one face, and its plane.
 struct Faces {
     face_of: Vec<usize>,
-    /// `None` for a triangle by itself, which is plane wherever its corners are.
+    /// `None` for a triangle by itself, which is plane wherever its corners are, for what bends too much as a whole, and for
+    /// small ones that are not wanted.
     planes: Vec<Option<Plane>>,
 }
 
 impl Faces {
-    /// Grows faces from the largest facets on, as far as neighbours lie in the plane of what has grown.
-    fn of(mesh: &Mesh, tolerance: f64) -> Option<Self> {
+    /// Grows faces from the largest facets on, as far as neighbours lie in the plane of what has grown. Those smaller than a
+    /// square with sides of `least` are none.
+    fn of(mesh: &Mesh, tolerance: f64, least: f64) -> Option<Self> {
         let area = |f: usize| vector_area(mesh, f);
         let neighbours = neighbours(mesh)?;
         let mut seeds: Vec<usize> = (0..mesh.faces.len()).collect();
@@ -132,16 +178,15 @@ impl Faces {
                 members.extend(grown);
             }
             let plane = plane_of(mesh, &members, sum)?;
-            let corners = members.iter().flat_map(|&f| &mesh.faces[f]);
-            if corners.clone().any(|&v| plane.signed_distance(mesh.vertices[v as usize]).abs() > tolerance) {
-                return None;
-            }
-            planes.push((members.len() > 1 || mesh.faces[seed].len() > 3).then_some(plane));
+            let mut corners = members.iter().flat_map(|&f| &mesh.faces[f]);
+            let is_plane = corners.all(|&v| plane.signed_distance(mesh.vertices[v as usize]).abs() <= tolerance);
+            let is_large = sum.length() >= 2.0 * least * least;
+            planes.push((is_plane && is_large && (members.len() > 1 || mesh.faces[seed].len() > 3)).then_some(plane));
         }
         Some(Self { face_of, planes })
     }
 
-    /// For each vertex the planes that it has to lie in.
+    /// For each vertex the planes that it has to lie in, in the order of the faces: from the largest on.
     fn through_vertices(&self, mesh: &Mesh) -> Vec<Vec<Plane>> {
         let mut faces_at = vec![Vec::new(); mesh.vertices.len()];
         for (corners, &face) in mesh.faces.iter().zip(&self.face_of) {
@@ -151,6 +196,9 @@ impl Faces {
                     at.push(face);
                 }
             }
+        }
+        for faces in &mut faces_at {
+            faces.sort_unstable();
         }
         faces_at.iter().map(|faces| faces.iter().filter_map(|&f| self.planes[f]).collect()).collect()
     }
@@ -184,14 +232,15 @@ fn plane_of(mesh: &Mesh, facets: &[usize], area: DVec3) -> Option<Plane> {
     Some(Plane { normal, distance: sum / n })
 }
 
-/// The point nearest to `p` that lies in all planes, or least far from them.
+/// The point nearest to `p` that lies in all planes, or least far from them; `p` where that cannot be told.
 fn nearest_on_all(p: DVec3, planes: &[Plane]) -> DVec3 {
-    let outer = |n: DVec3| DMat3::from_cols(n * n.x, n * n.y, n * n.z);
-    // Least squares; what is added to the diagonal leaves alone the directions that no plane asks for.
-    let inverse = planes.iter().fold(DMat3::IDENTITY * 1e-9, |sum, plane| sum + outer(plane.normal)).inverse();
-    (0..3).fold(p, |at, _| {
-        at + inverse * planes.iter().map(|plane| plane.normal * -plane.signed_distance(at)).sum::<DVec3>()
-    })
+    if planes.is_empty() {
+        return p;
+    }
+    let normals = MatrixXx3::from_fn(planes.len(), |i, axis| planes[i].normal[axis]);
+    let ways = DVector::from_fn(planes.len(), |i, _| -planes[i].signed_distance(p));
+    let way = normals.svd(true, true).solve(&ways, PARALLEL);
+    way.map_or(p, |way| p + DVec3::new(way[0], way[1], way[2]))
 }
 
 #[cfg(test)]
@@ -244,16 +293,16 @@ mod tests {
             for (digits, step) in [(6, 1e-6), (7, 1e-7)] {
                 let file = written(&part, decimals(digits));
                 refused += usize::from(faces(&file).is_none());
-                let flat = flattened(&file, MOST).unwrap();
+                let flat = flattened(&file, MOST, 0.0).unwrap();
                 assert_eq!(faces(&flat), Some(count), "{digits} decimals");
                 for (a, b) in flat.vertices.iter().zip(&part.vertices) {
                     assert!(a.distance(*b) < 4.0 * step, "{digits} decimals: {a} for {b}");
                 }
             }
             let single = written(&part, |x| f64::from(x as f32));
-            assert_eq!(faces(&flattened(&single, MOST).unwrap()), Some(count));
+            assert_eq!(faces(&flattened(&single, MOST, 0.0).unwrap()), Some(count));
             let nine = written(&single, |x| format!("{x:.8e}").parse().unwrap());
-            assert_eq!(faces(&flattened(&nine, MOST).unwrap()), Some(count));
+            assert_eq!(faces(&flattened(&nine, MOST, 0.0).unwrap()), Some(count));
         }
         assert!(refused >= 4, "only {refused} were refused as written: the test shows nothing");
     }
@@ -302,7 +351,7 @@ mod tests {
     #[test]
     fn numbers_with_all_their_digits_or_somebodys_own_are_left_alone() {
         let part = triangles(&round(32), 0.06);
-        assert_eq!(flattened(&part, MOST), None);
+        assert_eq!(flattened(&part, MOST, 0.0), None);
         let mut dented = part;
         dented.vertices[3] *= 1.0 - 1e-4;
         assert!(polyhedron(&dented).is_err());
@@ -315,7 +364,7 @@ mod tests {
             let ring = |z: f64| outline.iter().map(move |&(x, y)| DVec3::new(x, y, z));
             let mut mesh = triangles(&outline, 1.0);
             mesh.vertices = ring(0.0).chain(ring(1.0)).collect();
-            assert_eq!((flattened(&mesh, MOST), mesh.vertices.len() as u32), (None, 2 * n));
+            assert_eq!((flattened(&mesh, MOST, 0.0), mesh.vertices.len() as u32), (None, 2 * n));
         }
     }
 
@@ -327,6 +376,6 @@ mod tests {
         part.vertices[35] += 2e-5 * up;
         let file = written(&part, decimals(6));
         assert_eq!(faces(&file), None);
-        assert_eq!(flattened(&file, MOST).and_then(|m| faces(&m)).filter(|n| *n <= 34), None);
+        assert_eq!(flattened(&file, MOST, 0.0).and_then(|m| faces(&m)).filter(|n| *n <= 34), None);
     }
 }

@@ -5,10 +5,12 @@
 
 mod bundle;
 mod cut;
+mod digits;
 mod error;
 mod flat;
 mod hull;
 mod mesh;
+mod near_hull;
 mod obj;
 mod pieces;
 mod scene;
