@@ -53,14 +53,14 @@ impl SampleCheck {
 
     /// A stamp far ahead is as little to be trusted as one far behind.
     fn is_stale(&self, now: Stamp) -> bool {
-        let age_ns = |s: Sample| now.0.saturating_sub(s.stamp.0).saturating_abs();
-        self.last.is_none_or(|s| age_ns(s) > self.timeout_ns)
+        let age_ns = |s: &Sample| now.0.saturating_sub(s.stamp.0).saturating_abs();
+        self.last.as_ref().is_none_or(|s| age_ns(s) > self.timeout_ns)
     }
 
     /// The same sample again is normal where the servo is faster than the device. Its buttons may change meanwhile.
     fn is_again(&mut self, sample: &Sample) -> bool {
         let Some(last) = &mut self.last else { return false };
-        let again = Sample { buttons: sample.buttons, ..*last } == *sample;
+        let again = last.sequence == sample.sequence && is_one_measurement(last, sample);
         if again {
             last.buttons = sample.buttons;
         }
@@ -72,12 +72,18 @@ impl SampleCheck {
         let Some(last) = &self.last else { return true };
         // A lower number under a later stamp: the device started again.
         let later = (sample.stamp, sample.sequence) > (last.stamp, last.sequence);
-        let repeated = Sample { sequence: sample.sequence, buttons: sample.buttons, ..*last } == *sample;
+        let repeated = is_one_measurement(last, sample);
         if sample.sequence == last.sequence || !later || repeated {
             health.set(Health::SEQUENCE);
         }
         later && !repeated
     }
+}
+
+/// Whether two samples are equal but for their numbers and buttons.
+fn is_one_measurement(a: &Sample, b: &Sample) -> bool {
+    let of = |s: &Sample| (s.stamp, s.connected, s.has_twist);
+    of(a) == of(b) && a.pose == b.pose && a.twist == b.twist
 }
 
 #[cfg(test)]

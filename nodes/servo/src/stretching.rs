@@ -1,5 +1,5 @@
 use haptics::{Displacement, LawKind, LawOutput};
-use spatial::{DVec3, Pose, Wrench};
+use spatial::{DVec3, Pose};
 
 /// Time in which a rotational stiffness that was once seen is forgotten, s.
 const MEMORY: f64 = 0.02;
@@ -28,7 +28,8 @@ struct Seen {
     hip: Pose,
     stretch: DVec3,
     turn: DVec3,
-    wrench: Wrench,
+    /// Of the law's wrench.
+    torque: DVec3,
 }
 
 impl Stretching {
@@ -44,30 +45,32 @@ impl Stretching {
 
     /// Looks at this tick's stretch between the law's proxy and the hand at `hip`, `dt` seconds after the last.
     pub fn step(&mut self, hip: &Pose, law: &LawOutput, kind: LawKind, dt: f64) {
-        let now = Seen {
-            hip: *hip,
-            stretch: hip.translation - law.proxy.translation,
-            turn: law.proxy.rotation_to(hip),
-            wrench: law.wrench,
+        let stretch = hip.translation - law.proxy.translation;
+        let turn = law.proxy.rotation_to(hip);
+        let Some(last) = &mut self.last else {
+            self.last = Some(Seen { hip: *hip, stretch, turn, torque: law.wrench.torque });
+            return;
         };
-        let last = self.last.replace(now).unwrap_or(now);
         // Between two samples of a slow device nothing changes, and the directions stay.
-        if now.stretch != last.stretch {
-            self.linear = now.stretch - last.stretch;
+        if stretch != last.stretch {
+            self.linear = stretch - last.stretch;
+            last.stretch = stretch;
         }
+        let turned_by = turn - std::mem::replace(&mut last.turn, turn);
+        // The other laws have no rotational proxy: what resists is seen in the torque.
+        let torque = law.wrench.torque - std::mem::replace(&mut last.torque, law.wrench.torque);
+        let last_hip = std::mem::replace(&mut last.hip, *hip);
         if kind == LawKind::Proxy {
-            if now.turn != last.turn {
-                self.angular = now.turn - last.turn;
+            if turned_by != DVec3::ZERO {
+                self.angular = turned_by;
             }
             return;
         }
-        // The other laws have no rotational proxy: what resists is seen in the torque.
-        let torque = now.wrench.torque - last.wrench.torque;
         if torque != DVec3::ZERO {
             self.angular = torque;
         }
         self.rotation_stiffness *= (1.0 - dt / MEMORY).max(0.0);
-        let turned = last.hip.rotation_to(hip);
+        let turned = last_hip.rotation_to(hip);
         let square = turned.length_squared();
         if square > self.least_turn * self.least_turn {
             self.rotation_stiffness = self.rotation_stiffness.max(-torque.dot(turned) / square);

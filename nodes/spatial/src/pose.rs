@@ -57,6 +57,7 @@ impl Pose {
 
     /// The rotation vector (radians, outer axes, angle in `[0, pi]`) that takes `self`'s orientation to `to`'s; exactly zero if
     /// they are the same.
+    #[inline]
     #[must_use]
     pub fn rotation_to(&self, to: &Self) -> DVec3 {
         if self.rotation == to.rotation {
@@ -74,9 +75,7 @@ impl Pose {
             let series = 1.0 - square * (1.0 / 3.0 - square * (1.0 / 5.0 - square * (1.0 / 7.0 - square / 9.0)));
             return s * (2.0 / w * series);
         }
-        // atan2 form: exact for small angles, where acos loses half the digits.
-        let sin_half = s.length();
-        s * (2.0 * sin_half.atan2(q.w) / sin_half)
+        rotation_vector(s, q.w)
     }
 
     /// `self` moved by `dp` (metres) and turned by the rotation vector `dtheta` (radians), both along outer axes.
@@ -95,10 +94,17 @@ impl Pose {
     }
 
     /// True if every number is finite and the quaternion's norm is within `1e-6` of one.
+    #[inline]
     #[must_use]
     pub fn is_valid(&self) -> bool {
         self.translation.is_finite() && self.rotation.is_finite() && (self.rotation.length() - 1.0).abs() < 1e-6
     }
+}
+
+/// The rotation vector of a unit quaternion with `w >= 0`. By atan2: exact for small angles, where acos loses half the digits.
+fn rotation_vector(s: DVec3, w: f64) -> DVec3 {
+    let sin_half = s.length();
+    s * (2.0 * sin_half.atan2(w) / sin_half)
 }
 
 impl Default for Pose {

@@ -20,8 +20,12 @@ pub struct Limiter {
 impl Limiter {
     /// One tick of `dt` seconds. What is asked must be finite.
     pub fn step(&mut self, asked: &Wrench, gains: &Gains, dt: f64) -> Limited {
-        let goal = clamped(asked, gains);
-        let saturated = asked.force.length() > gains.max_force || asked.torque.length() > gains.max_torque;
+        let lengths = [asked.force.length(), asked.torque.length()];
+        let saturated = lengths[0] > gains.max_force || lengths[1] > gains.max_torque;
+        let goal = Wrench::new(
+            asked.force * limit_factor(lengths[0], gains.max_force),
+            asked.torque * limit_factor(lengths[1], gains.max_torque),
+        );
         self.last.force += shortened(goal.force - self.last.force, gains.max_force_rate * dt);
         self.last.torque += shortened(goal.torque - self.last.torque, gains.max_torque_rate * dt);
         // When a limit was lowered, the way down is not slowed by the rate.

@@ -21,27 +21,21 @@ pub(crate) struct Compromise {
 impl Compromise {
     /// Exists whatever the rows ask, and is continuous in them. Normals are of length one; equal rows count once.
     pub fn of(rows: &[Row<3>]) -> Self {
-        let counts = |i: usize| !rows[..i].iter().any(|r| is_equal(r, &rows[i]));
-        let violated = |z: DVec3| {
-            let of_row = move |(i, r): (usize, &Row<3>)| (i, violation(r, z));
-            rows.iter().enumerate().map(of_row).filter(move |(i, v)| *v > 0.0 && counts(*i))
-        };
-        let cost = |z: DVec3| z.length_squared() + WEIGHT * violated(z).map(|(_, v)| v * v).sum::<f64>();
         let mut least = DVec3::ZERO;
+        let mut there = Pull::at(rows, least);
         for _ in 0..ROUNDS {
-            let (mut h, mut g) = (DMat3::IDENTITY, DVec3::ZERO);
-            for (i, _) in violated(least) {
-                let n = DVec3::from_array(rows[i].normal);
-                h += DMat3::from_cols(n * n.x, n * n.y, n * n.z) * WEIGHT;
-                g += n * (WEIGHT * rows[i].offset);
-            }
-            let mut next = h.inverse() * g;
-            if cost(next) > cost(least) {
+            let mut next = there.h.inverse() * there.g;
+            let mut pull = Pull::at(rows, next);
+            // The same rows ask for the same place again.
+            let mut is_last = pull.violated == there.violated && rows.len() <= 64;
+            if pull.cost > there.cost {
                 next = next.midpoint(least);
+                pull = Pull::at(rows, next);
+                is_last = false;
             }
             let way = next.distance(least);
-            least = next;
-            if way <= 1e-12 {
+            (least, there) = (next, pull);
+            if is_last || way <= 1e-12 {
                 break;
             }
         }
@@ -51,6 +45,36 @@ impl Compromise {
     /// The row's multiplier: `z = sum multiplier_i normal_i`.
     pub fn multiplier(&self, row: &Row<3>) -> f64 {
         (WEIGHT + 1.0) * violation(row, self.least).max(0.0)
+    }
+}
+
+/// What the rows that are violated somewhere ask for.
+struct Pull {
+    /// `|z|^2 + WEIGHT sum violation^2` there.
+    cost: f64,
+    /// While the same rows are violated it is least where `h z = g`.
+    h: DMat3,
+    g: DVec3,
+    /// Which of the first 64 rows are violated.
+    violated: u64,
+}
+
+impl Pull {
+    fn at(rows: &[Row<3>], z: DVec3) -> Self {
+        let mut squares = 0.0;
+        let mut pull = Self { cost: 0.0, h: DMat3::IDENTITY, g: DVec3::ZERO, violated: 0 };
+        for (i, row) in rows.iter().enumerate() {
+            let v = violation(row, z);
+            if v > 0.0 && !rows[..i].iter().any(|r| is_equal(r, row)) {
+                let n = DVec3::from_array(row.normal);
+                pull.h += DMat3::from_cols(n * n.x, n * n.y, n * n.z) * WEIGHT;
+                pull.g += n * (WEIGHT * row.offset);
+                pull.violated |= 1 << (i % 64);
+                squares += v * v;
+            }
+        }
+        pull.cost = z.length_squared() + WEIGHT * squares;
+        pull
     }
 }
 

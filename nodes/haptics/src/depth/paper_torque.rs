@@ -33,6 +33,7 @@ fn edge_rule(points: &[DVec3], x_axis: DVec3, normal: DVec3, force: DVec3, x0: D
     let x_axis = (x_axis - z_axis * x_axis.dot(z_axis)).normalize();
     let y_axis = z_axis.cross(x_axis);
     let k = points.len() as f64;
+    let least = ZERO * force.length();
     let (mut sum_x, mut sum_y, mut positive, mut negative, mut zero) = (0.0, 0.0, false, false, false);
     for p in points {
         let arm = x0 - *p;
@@ -40,7 +41,7 @@ fn edge_rule(points: &[DVec3], x_axis: DVec3, normal: DVec3, force: DVec3, x0: D
         let (tx, ty) = (tau.dot(x_axis), tau.dot(y_axis));
         sum_x += tx;
         sum_y += ty;
-        let small = ZERO * force.length() * arm.length();
+        let small = least * arm.length();
         positive |= ty > small;
         negative |= ty < -small;
         zero |= ty.abs() <= small;
@@ -79,6 +80,10 @@ pub(crate) fn convex_hull(points: &[DVec3], normal: DVec3, hull: &mut Vec<DVec3>
     let same = 1e-8 * size;
     if size <= 1e-12 {
         hull.push(*first);
+        return;
+    }
+    if points.len() == 2 {
+        hull.extend_from_slice(points);
         return;
     }
     let (u, v) = normal.any_orthonormal_pair();

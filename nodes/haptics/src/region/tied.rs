@@ -176,25 +176,22 @@ fn along_edge(
     if span.is_empty() || !is_apart(&span.enter) || !is_apart(&span.leave) {
         return false;
     }
-    let ends = [(&span.enter, i), (&span.leave, next)].map(|(cut, vertex)| {
+    let corner = |cut: &Cut, vertex: usize| {
         let corner = if cut.side == Cut::NONE { Corner::OfA(vertex) } else { Corner::Crossing(i, cut.side as usize) };
         faces.contact(corner, from + (to - from) * cut.line)
-    });
+    };
+    let (enter, leave) = (corner(&span.enter, i), corner(&span.leave, next));
     // Near's own contact comes first, with the plane that it has; it counts even where the face goes on beyond.
-    let own = ends.iter().position(|p| p.as_ref().is_some_and(|p| p.contact == near.contact));
-    let own_point = match own.and_then(|k| ends[k].as_ref()) {
+    let is_own = |p: &RegionPoint| p.contact == near.contact;
+    let own_point = match enter.iter().chain(&leave).find(|p| is_own(p)) {
         Some(p) => Some(p.point_w),
         None => facing_point(pair, near, own_tolerance(pair)),
     };
     if let Some(point_w) = own_point {
         push_within(out, RegionPoint::of(near, point_w));
     }
-    for (k, found) in ends.iter().enumerate() {
-        if let Some(found) = found
-            && own != Some(k)
-        {
-            push_within(out, *found);
-        }
+    for found in enter.iter().chain(&leave).filter(|p| !is_own(p)) {
+        push_within(out, *found);
     }
     true
 }
