@@ -45,7 +45,13 @@ impl LawOutput {
 /// Renders contact: owns trackers and scratch, allocates at construction only.
 pub trait RenderLaw: Send {
     /// One tick: the hand's pose of A in W, the gains and the time since the last tick (s). Bounded; no allocation.
-    fn render(&mut self, hip: &Pose, gains: &Gains, dt: f64) -> LawOutput;
+    fn render(&mut self, hip: &Pose, gains: &Gains, dt: f64) -> LawOutput {
+        let mut out = LawOutput::free(*hip);
+        self.render_into(hip, gains, dt, &mut out);
+        out
+    }
+    /// The same, into the output of a hand that touches nothing: what a tick gives is large to hand on.
+    fn render_into(&mut self, hip: &Pose, gains: &Gains, dt: f64, out: &mut LawOutput);
     /// Forgets the past: the next pose is seeded globally.
     fn reset(&mut self);
 }

@@ -62,7 +62,7 @@ impl Renderer {
 }
 
 impl RenderLaw for Renderer {
-    fn render(&mut self, hip: &Pose, gains: &Gains, dt: f64) -> LawOutput {
+    fn render_into(&mut self, hip: &Pose, gains: &Gains, dt: f64, out: &mut LawOutput) {
         // A pose that is none (not a number, no unit quaternion) leaves the hand where it was.
         if hip.is_valid() {
             self.hip = *hip;
@@ -71,27 +71,21 @@ impl RenderLaw for Renderer {
         self.sense.step(hip);
         let changed = self.law.is_some_and(|l| l != gains.law);
         let first = self.law.replace(gains.law).is_none();
-        let mut out = if gains.law == LawKind::Proxy {
+        out.proxy = *hip;
+        if gains.law == LawKind::Proxy {
             if changed {
                 // The proxy was not followed meanwhile: it starts where the hand is.
                 self.proxy.reset();
             }
             let seeded = self.proxy.follow(&self.solids, hip, gains, dt);
-            let (wrench, energy) = self.proxy.pull(gains);
-            let (formation, dropped) = self.proxy.view.formation();
-            let depth = self.depth_law.depth(&self.solids, &self.sense.pairs, hip);
-            LawOutput {
-                wrench,
-                depth,
-                energy,
-                formation,
-                dropped,
-                reseeded: seeded && !first && !changed,
-                ..LawOutput::free(self.proxy.pose)
-            }
+            out.proxy = self.proxy.pose;
+            (out.wrench, out.energy) = self.proxy.pull(gains);
+            out.dropped = self.proxy.view.state(&mut out.formation);
+            out.depth = self.depth_law.depth(&self.solids, &self.sense.pairs, hip);
+            out.reseeded = seeded && !first && !changed;
         } else {
-            self.depth_law.render(&self.solids, &self.sense.pairs, hip, gains.law, gains)
-        };
+            self.depth_law.render(&self.solids, &self.sense.pairs, hip, gains.law, gains, out);
+        }
         out.changed = changed;
         out.divergent = self.sense.divergent;
         out.reseeded |= self.sense.reseeded && !first;
@@ -104,7 +98,6 @@ impl RenderLaw for Renderer {
             self.fade = (self.fade - dt.max(0.0) / CROSSFADE).max(0.0);
         }
         self.last = out.wrench;
-        out
     }
 
     fn reset(&mut self) {

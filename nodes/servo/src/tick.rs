@@ -82,7 +82,8 @@ impl Tick {
             health.set(Health::RESEEDED);
         }
         let twist = self.twist();
-        let mut law = self.law.render(&hip, &gains, dt);
+        let mut law = LawOutput::free(hip);
+        self.law.render_into(&hip, &gains, dt, &mut law);
         self.check(&mut law, &hip, &mut health);
 
         let rendered = Rendered {

@@ -62,35 +62,41 @@ impl DepthLaw {
         self.scp.reset();
     }
 
-    /// The wrench at the hand's pose from the pairs sensed there.
-    pub fn render(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, law: LawKind, gains: &Gains) -> LawOutput {
+    /// The wrench at the hand's pose from the pairs sensed there, written into the `result` of a hand that is free.
+    pub fn render(
+        &mut self,
+        solids: &Solids,
+        pairs: &[Sensed],
+        hip: &Pose,
+        law: LawKind,
+        gains: &Gains,
+        result: &mut LawOutput,
+    ) {
         let placed = Placed::new(hip);
         let x0 = hip.translation;
         self.points.clear();
-        let depth = self.scp.find(solids, pairs, hip, &placed);
-        let mut result = LawOutput { depth, ..LawOutput::free(*hip) };
-        if depth > 0.0 {
-            let shift = self.scp.shift();
-            result.proxy.translation = x0 + shift; // one plane alone: (1)
-            result.wrench.force = shift * gains.stiffness; // (2)
-            result.energy = 0.5 * gains.stiffness * shift.length_squared();
-            // The contacts take place at the SCP: along one plane's normal that changes nothing, across it their arms do.
-            let aside = if self.scp.touches.iter().filter(|t| t.push > 0.0).count() > 1 { shift } else { DVec3::ZERO };
-            let there = placed.shifted(aside);
-            for t in &mut self.scp.touches {
-                t.left = t.plane.distance + t.plane.normal_w.dot(aside);
-            }
-            self.contacts(solids, pairs, &there, law, gains, &mut result);
-            for i in 0..self.scp.touches.len() {
-                let t = self.scp.touches[i];
-                if t.push > 0.0 {
-                    result.wrench.torque += self.torque_of(i, t, there.x, law, gains);
-                }
-            }
-        } else {
+        result.depth = self.scp.find(solids, pairs, hip, &placed);
+        if !(result.depth > 0.0) {
             self.multiple = false;
+            return;
         }
-        result
+        let shift = self.scp.shift();
+        result.proxy.translation = x0 + shift; // one plane alone: (1)
+        result.wrench.force = shift * gains.stiffness; // (2)
+        result.energy = 0.5 * gains.stiffness * shift.length_squared();
+        // The contacts take place at the SCP: along one plane's normal that changes nothing, across it their arms do.
+        let aside = if self.scp.touches.iter().filter(|t| t.push > 0.0).count() > 1 { shift } else { DVec3::ZERO };
+        let there = placed.shifted(aside);
+        for t in &mut self.scp.touches {
+            t.left = t.plane.distance + t.plane.normal_w.dot(aside);
+        }
+        self.contacts(solids, pairs, &there, law, gains, result);
+        for i in 0..self.scp.touches.len() {
+            let t = self.scp.touches[i];
+            if t.push > 0.0 {
+                result.wrench.torque += self.torque_of(i, t, there.x, law, gains);
+            }
+        }
     }
 
     /// The penetration of the hand's pose, metres, `>= 0`.
@@ -193,21 +199,21 @@ impl DepthLaw {
         self.weights.clear();
         self.sharpness.clear();
         let fade = if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
-        for (j, u) in self.scp.touches.iter().enumerate() {
-            if i != j && !is_equal(&t, u) {
-                continue;
-            }
-            let beside = if i == j { u.beside } else { [0; 2] };
-            for p in self.points[u.first..u.end].iter().chain(&self.points[beside[0]..beside[1]]) {
-                if self.places.len() == ROOM {
-                    break;
-                }
+        let Self { scp, points, places, weights, sharpness, .. } = self;
+        let mut add = |p: &RegionPoint| {
+            if places.len() < ROOM {
                 // (5), (6) and the nearest point know the contact plane only: slide App along n to the level of x0.
-                self.places.push(p.point_w + normal * normal.dot(x0 - p.point_w));
+                places.push(p.point_w + normal * normal.dot(x0 - p.point_w));
                 let short = p.gap - t.left;
                 let weight = if law == LawKind::Blended { (1.0 - short / fade).clamp(0.0, 1.0) } else { 1.0 };
-                self.weights.push(weight);
-                self.sharpness.push(f64::from(p.sharpness));
+                weights.push(weight);
+                sharpness.push(f64::from(p.sharpness));
+            }
+        };
+        for (j, u) in scp.touches.iter().enumerate().filter(|(j, u)| *j == i || is_equal(&t, u)) {
+            points[u.first..u.end].iter().for_each(&mut add);
+            if i == j {
+                points[u.beside[0]..u.beside[1]].iter().for_each(&mut add);
             }
         }
         if law == LawKind::Paper {

@@ -348,9 +348,8 @@ impl View {
         }
     }
 
-    /// The contacts that take place at the proxy, and how many found no room.
-    pub fn formation(&mut self) -> (ContactFormation, u32) {
-        let mut formation = ContactFormation::FREE;
+    /// Adds the contacts that take place at the proxy to a formation of none; how many found no room.
+    pub fn state(&mut self, formation: &mut ContactFormation) -> u32 {
         let mut dropped = 0;
         std::mem::swap(&mut self.touching, &mut self.touched);
         self.touching.fill(false);
@@ -379,7 +378,7 @@ impl View {
                 dropped += u32::from(!kept);
             }
         }
-        (formation, dropped)
+        dropped
     }
 }
 

@@ -71,7 +71,7 @@ fn hollow_end(pair: &Pair<'_>, (edge_a, edge_b): (EdgeId, EdgeId), normal_w: DVe
     };
     let felt_b = |t: f64| {
         let at = ends_b[0].lerp(ends_b[1], t);
-        solids.fixed.is_alone(piece) || solids.fixed.is_felt_on_edge(piece, edge_b, at, normal_w)
+        solids.fixed.is_alone(piece) || solids.fixed.is_felt_on_edge(piece, edge_b, || at, normal_w)
     };
     let (s, t) = (on_a.clamp(0.0, 1.0), on_b.clamp(0.0, 1.0));
     let (hollow_a, hollow_b) = (!felt_a(s), !felt_b(t));

@@ -80,10 +80,9 @@ impl<'a> Pair<'a> {
                 face_felt && (fixed.is_alone(piece) || fixed.is_felt_at_vertex(piece, vertex_b, c.normal_w))
             }
             BasicContact::TypeC { edge_b, .. } => {
-                let at = at();
                 (fixed.is_alone(piece) || fixed.is_felt_on_edge(piece, edge_b, at, c.normal_w))
                     && (moving.is_alone(part) || {
-                        let on_a = seen_from_a(at + c.normal_w * c.distance);
+                        let on_a = seen_from_a(at() + c.normal_w * c.distance);
                         moving.is_felt(part, on_a, -(into_a * c.normal_w))
                     })
             }

@@ -36,14 +36,23 @@ pub(crate) struct Seams {
     facets: Vec<Vec<bool>>,
     /// For each piece and vertex the neighbours that the vertex belongs to.
     at_vertex: Vec<Vec<Vec<u32>>>,
-    /// For each piece and edge the neighbours that some of the edge's points may belong to.
-    at_edge: Vec<Vec<Vec<u32>>>,
+    /// For each piece and edge the neighbours that some of the edge's points belong to.
+    at_edge: Vec<Vec<Vec<Stretch>>>,
     /// For each piece, face, and neighbour that some place just outside of the face may lie in: the neighbour's planes which do not
     /// have all such places inside.
     over_face: Vec<Vec<Vec<Vec<Plane>>>>,
     /// For each piece and face the faces of other pieces that lie in its plane and look the same way.
     flush: Vec<Vec<Vec<(u32, FaceId)>>>,
     tolerance: f64,
+}
+
+/// A part of an edge that lies in another piece.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    other: u32,
+    /// From the edge's first vertex, metres; infinite where the edge ends in the piece.
+    from: f64,
+    to: f64,
 }
 
 /// Places along an edge where it is judged once and for all; what differs between them is judged in the tick.
@@ -92,7 +101,7 @@ impl Seams {
             tolerance,
         };
         seams.at_vertex = (0..n).map(|a| seams.owners_of_vertices(a)).collect();
-        seams.at_edge = (0..n).map(|a| seams.near_edges(a)).collect();
+        seams.at_edge = (0..n).map(|a| seams.stretches_of_edges(a)).collect();
         seams.over_face = (0..n).map(|a| seams.planes_over_faces(a)).collect();
         seams.live_edges = (0..n).map(|a| seams.find_live_edges(a)).collect();
         seams.sides = (0..n).map(|a| seams.find_sides(a)).collect();
@@ -118,9 +127,29 @@ impl Seams {
         self.pieces[piece].vertices().iter().map(owners).collect()
     }
 
-    fn near_edges(&self, piece: usize) -> Vec<Vec<u32>> {
+    fn stretches_of_edges(&self, piece: usize) -> Vec<Vec<Stretch>> {
         let p = &self.pieces[piece];
-        p.edges().map(|e| self.near(piece, &p.edge(e).vertices.map(|v| p.vertex(v)))).collect()
+        let of_edge = |ends: [DVec3; 2]| {
+            self.neighbors[piece].iter().filter_map(|&other| self.stretch_within(other, ends)).collect()
+        };
+        p.edges().map(|e| of_edge(p.edge(e).vertices.map(|v| p.vertex(v)))).collect()
+    }
+
+    /// What of the way from one point to another lies in the piece, if any does.
+    fn stretch_within(&self, other: u32, [a, b]: [DVec3; 2]) -> Option<Stretch> {
+        let q = &self.pieces[other as usize];
+        let length = a.distance(b);
+        let mut stretch = Stretch { other, from: f64::NEG_INFINITY, to: f64::INFINITY };
+        for f in q.faces() {
+            let [over_a, over_b] = [a, b].map(|p| q.face_plane(f).signed_distance(p) - self.tolerance);
+            match (over_a > 0.0, over_b > 0.0) {
+                (true, true) => return None,
+                (true, false) => stretch.from = stretch.from.max(length * over_a / (over_a - over_b)),
+                (false, true) => stretch.to = stretch.to.min(length * over_a / (over_a - over_b)),
+                (false, false) => {}
+            }
+        }
+        (stretch.from <= stretch.to).then_some(stretch)
     }
 
     fn planes_over_faces(&self, piece: usize) -> Vec<Vec<Vec<Plane>>> {
@@ -145,7 +174,7 @@ impl Seams {
                 let edge = p.edge(e);
                 let [a, b] = edge.vertices.map(|v| p.vertex(v));
                 let [f, g] = edge.faces.map(|f| p.face_plane(f).normal);
-                SAMPLES.iter().any(|s| self.is_felt_on_edge(piece, e, a.lerp(b, *s), (f + g).normalize_or_zero()))
+                SAMPLES.iter().any(|s| self.is_felt_on_edge(piece, e, || a.lerp(b, *s), (f + g).normalize_or_zero()))
             })
             .collect()
     }
@@ -261,7 +290,9 @@ impl Seams {
     /// Whether a contact at `point` on the surface of `piece`, with the outward `normal`, both in the pieces' frame, is one
     /// of the uncut solid: the contact plane must support every piece that the point belongs to.
     pub fn is_felt(&self, piece: usize, point: DVec3, normal: DVec3) -> bool {
-        self.is_felt_among(&self.neighbors[piece], point, normal)
+        self.neighbors[piece].iter().all(|&other| {
+            !self.pieces[other as usize].contains(point, self.tolerance) || self.supports(other, point, normal)
+        })
     }
 
     /// The same of a contact at a vertex.
@@ -270,15 +301,16 @@ impl Seams {
         self.at_vertex[piece][vertex.index()].iter().all(|&other| self.supports(other, point, normal))
     }
 
-    /// The same of a contact at `point` on an edge, between its ends.
-    pub fn is_felt_on_edge(&self, piece: usize, edge: EdgeId, point: DVec3, normal: DVec3) -> bool {
-        self.is_felt_among(&self.at_edge[piece][edge.index()], point, normal)
-    }
-
-    fn is_felt_among(&self, others: &[u32], point: DVec3, normal: DVec3) -> bool {
-        others.iter().all(|&other| {
-            !self.pieces[other as usize].contains(point, self.tolerance) || self.supports(other, point, normal)
-        })
+    /// The same of a contact at a point on an edge, between its ends.
+    pub fn is_felt_on_edge(&self, piece: usize, edge: EdgeId, point: impl FnOnce() -> DVec3, normal: DVec3) -> bool {
+        let stretches = &self.at_edge[piece][edge.index()];
+        if stretches.is_empty() {
+            return true;
+        }
+        let (p, point) = (&self.pieces[piece], point());
+        let along = p.edge_direction(edge).dot(point - p.vertex(p.edge(edge).vertices[0]));
+        let is_within = |s: &&Stretch| s.from <= along && along <= s.to;
+        stretches.iter().filter(is_within).all(|s| self.supports(s.other, point, normal))
     }
 
     /// Whether the plane through `point` with the outward `normal` has no more of the piece beyond it than a flat seam lets out.
@@ -328,6 +360,7 @@ fn side_ends(p: &Polyhedron, face: FaceId, side: usize) -> [DVec3; 2] {
 mod tests {
     use super::*;
     use crate::testing::cuboid;
+    use spatial::Pose;
 
     #[test]
     fn joint_of_two_boxes_is_flat_on_top_and_dead_inside() {
@@ -426,6 +459,33 @@ mod tests {
                 assert_eq!(s.cover(piece, f) == Cover::Internal, !outer, "piece {piece}, normal {n}, at {point}");
             }
         }
+    }
+
+    #[test]
+    fn on_an_edge_what_is_felt_is_what_is_felt_at_the_point() {
+        // A floor in two pieces that overlap, a wall on it, and a plate that leans into both.
+        let leaning = Pose::from_xyz_rpy(DVec3::new(0.3, 0.2, 0.1), DVec3::new(0.4, -0.7, 0.3));
+        let s = Seams::new(vec![
+            Arc::new(cuboid(DVec3::new(-1.0, -1.0, -1.0), DVec3::new(0.2, 1.0, 0.0))),
+            Arc::new(cuboid(DVec3::new(0.0, -1.0, -1.0), DVec3::new(1.0, 1.0, 0.0))),
+            Arc::new(cuboid(DVec3::new(0.5, -0.5, 0.0), DVec3::new(0.7, 1.0, 1.0))),
+            Arc::new(cuboid(DVec3::new(-0.5, -0.5, -0.1), DVec3::new(0.5, 0.5, 0.1)).transformed(&leaning, 1.0)),
+        ]);
+        let (mut felt, mut unfelt) = (0, 0);
+        for piece in 0..4 {
+            let p = &s.pieces[piece];
+            for e in p.edges() {
+                let [a, b] = p.edge(e).vertices.map(|v| p.vertex(v));
+                let [f, g] = p.edge(e).faces.map(|f| p.face_plane(f).normal);
+                for (i, j) in (0..=20).flat_map(|i| (0..=4).map(move |j| (i, j))) {
+                    let (at, normal) = (a.lerp(b, f64::from(i) / 20.0), f.lerp(g, f64::from(j) / 4.0).normalize());
+                    let expected = s.is_felt(piece, at, normal);
+                    assert_eq!(s.is_felt_on_edge(piece, e, || at, normal), expected, "piece {piece}, {at}, {normal}");
+                    *(if expected { &mut felt } else { &mut unfelt }) += 1;
+                }
+            }
+        }
+        assert!(felt > 1000 && unfelt > 1000, "{felt} {unfelt}");
     }
 
     #[test]
