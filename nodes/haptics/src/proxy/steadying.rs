@@ -32,6 +32,8 @@ pub(crate) struct Steadying {
     /// Ticks in a row that overshot, and whether this one did.
     ticks: u32,
     overshot: bool,
+    /// Whether the last round did.
+    over: bool,
     /// The last round's turn, what part of it was made, and what pushed.
     last: Option<(DVec3, f64, Active)>,
 }
@@ -39,6 +41,7 @@ pub(crate) struct Steadying {
 impl Steadying {
     /// A tick begins.
     pub fn begin(&mut self) {
+        self.over = false;
         self.ticks = if std::mem::take(&mut self.overshot) { self.ticks + 1 } else { 0 };
     }
 
@@ -60,7 +63,10 @@ impl Steadying {
             // The error goes by the factor `1 - made (1 + c) / (1 + mu)` a round; `c` is the curvature's stiffness over `k_r`.
             let factor = step.dtheta.dot(turn) / turn.length_squared();
             let curvature = ((1.0 - factor) * (1.0 + self.mu) / made - 1.0).clamp(0.0, MOST);
-            self.overshot |= factor < -OVERSHOOT;
+            let over = factor < -OVERSHOOT;
+            // A first round that is mended by the second is none: again and again it overshoots.
+            self.overshot |= over && self.over;
+            self.over = over;
             if self.mu > 0.0 || self.overshot && self.ticks >= TICKS {
                 self.mu = curvature.max(KEPT * self.mu);
             }
