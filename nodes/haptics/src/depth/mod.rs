@@ -137,6 +137,9 @@ impl DepthLaw {
                 // there may be small, or gaps, where the pair has no contact of its own.
                 let scope = Scope { near_felt: false, ..scope };
                 if !is_clipped {
+                    for p in &mut self.points[t.first..t.end] {
+                        p.sharpness = solids.sharpness(pair.part, pair.piece, p.contact);
+                    }
                     self.clipper.start(&pair, &plane, &scope);
                 }
                 self.clipper.beside(&pair, pairs, &plane, &scope, &mut self.points);

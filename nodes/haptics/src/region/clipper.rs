@@ -55,7 +55,7 @@ impl Clipper {
         // Near's own contact first, at its exact place, when its features face each other.
         let own = if scope.near_felt { facing_point(pair, near, own_tolerance(pair)) } else { None };
         if let Some(point_w) = own.filter(|_| near.distance <= scope.reach) {
-            let sharpness = if scope.wide { pair.solids.sharpness(pair.part, pair.piece, near.contact) } else { 1.0 };
+            let sharpness = if scope.wide { own_sharpness(pair, near, point_w, scope) } else { 1.0 };
             let found = RegionPoint { sharpness, ..RegionPoint::of(near, point_w) };
             push(found, (same, !scope.along_near), [first; 2], out);
         }
@@ -247,6 +247,17 @@ fn push(p: RegionPoint, (same, apart): (f64, bool), [first, ring]: [usize; 2], o
     if !known() {
         push_within(out, p);
     }
+}
+
+/// How much of a contact Near's own is, 0 to 1, at `point_w` on B.
+fn own_sharpness(pair: &Pair<'_>, near: &CFace, point_w: DVec3, scope: &Scope) -> f32 {
+    let Pair { solids, part, piece, .. } = *pair;
+    let at = [point_w + near.normal_w * near.distance, point_w];
+    let is_cut = !solids.is_seamless(part, piece)
+        && most_parallel(pair, near)
+            .and_then(|f| FacePair::new(pair, f, near.normal_w, scope))
+            .is_some_and(|f| f.is_cut(near.contact, at));
+    if is_cut { 0.0 } else { solids.sharpness(part, piece, near.contact) }
 }
 
 /// Keeps what is new if there is room.

@@ -139,7 +139,6 @@ impl<'a> FacePair<'a> {
             };
             (goes_on && !solids.is_internal_b(piece, face_b)).then_some((self.face_a, face_b))
         };
-        let before = |i: usize, n: usize| if i == 0 { n - 1 } else { i - 1 };
         match corner {
             Corner::OfA(i) => {
                 [before(i, self.ring_a().len()), i].into_iter().filter_map(beyond_a).for_each(&mut each);
@@ -209,8 +208,8 @@ impl<'a> FacePair<'a> {
             return None;
         }
         let foot = point - self.sight * (height / self.slope);
-        if self.scope.wide && self.is_cut_in_a(corner, point) {
-            // Weighted by their depths, the ends of a cut in A's face would count as contacts.
+        // Weighted by their depths, the ends of a cut in A's face would count as contacts.
+        if self.scope.wide && self.is_cut_in_a(corner, point) || self.is_cut_in_b(corner, foot) {
             return None;
         }
         let (contact, point_w, normal_w, gap) = match corner {
@@ -221,16 +220,9 @@ impl<'a> FacePair<'a> {
             Corner::OfB(j) => {
                 let vertex_b = self.pair.b.face_vertices(self.face_b)[j];
                 let at = self.pair.b.vertex(vertex_b);
-                let last = if j == 0 { self.pair.b.face_vertices(self.face_b).len() - 1 } else { j - 1 };
-                if [last, j].iter().any(|s| self.pair.solids.goes_on_b(self.pair.piece, self.face_b, *s, at)) {
-                    return None;
-                }
                 (BasicContact::TypeA { face_a: self.face_a, vertex_b }, at, self.normal_a, height * self.lean)
             }
             Corner::Crossing(i, j) => {
-                if self.pair.solids.goes_on_b(self.pair.piece, self.face_b, j, foot) {
-                    return None;
-                }
                 let (edge_a, edge_b) = (self.pair.a.face_edges(self.face_a)[i], self.pair.b.face_edges(self.face_b)[j]);
                 let (normal_w, gap) = crossing(&self.pair, edge_a, edge_b, self.plane_b.normal, height);
                 (BasicContact::TypeC { edge_a, edge_b }, foot, normal_w, gap)
@@ -240,15 +232,49 @@ impl<'a> FacePair<'a> {
         (gap <= self.scope.reach).then_some(RegionPoint { contact, sharpness: 1.0, point_w, normal_w, gap })
     }
 
+    /// Whether a contact of these faces, at these places on A and on B, is one that only a cut in either body makes.
+    pub fn is_cut(&self, contact: BasicContact, [on_a, on_b]: [DVec3; 2]) -> bool {
+        let ring_b = self.pair.b.face_vertices(self.face_b);
+        let corner = match contact {
+            BasicContact::TypeA { vertex_b, .. } => ring_b.iter().position(|v| *v == vertex_b).map(Corner::OfB),
+            BasicContact::TypeB { vertex_a, .. } => self.ring_a().iter().position(|v| *v == vertex_a).map(Corner::OfA),
+            BasicContact::TypeC { edge_a, edge_b } => {
+                let i = self.edges_a().iter().position(|e| *e == edge_a);
+                let j = self.pair.b.face_edges(self.face_b).iter().position(|e| *e == edge_b);
+                i.zip(j).map(|(i, j)| Corner::Crossing(i, j))
+            }
+        };
+        corner.is_some_and(|c| self.is_cut_in_a(c, on_a) || self.is_cut_in_b(c, on_b))
+    }
+
     /// Whether A's face goes on in another part of A beyond a side that the corner lies on.
     fn is_cut_in_a(&self, corner: Corner, point: DVec3) -> bool {
         let is_cut = |side| self.pair.solids.goes_on_a(self.pair.part, self.face_a, side, point, self.pair.placed);
         match corner {
-            Corner::OfA(i) => is_cut(i) || is_cut(if i == 0 { self.ring_a().len() - 1 } else { i - 1 }),
+            Corner::OfA(i) => is_cut(i) || is_cut(before(i, self.ring_a().len())),
             Corner::OfB(_) => false,
             Corner::Crossing(i, _) => is_cut(i),
         }
     }
+
+    /// The same of B's face, for its vertex or the foot of the crossing.
+    fn is_cut_in_b(&self, corner: Corner, foot: DVec3) -> bool {
+        let is_cut = |side, at| self.pair.solids.goes_on_b(self.pair.piece, self.face_b, side, at);
+        match corner {
+            Corner::OfA(_) => false,
+            Corner::OfB(j) => {
+                let ring = self.pair.b.face_vertices(self.face_b);
+                let at = self.pair.b.vertex(ring[j]);
+                is_cut(before(j, ring.len()), at) || is_cut(j, at)
+            }
+            Corner::Crossing(_, j) => is_cut(j, foot),
+        }
+    }
+}
+
+/// The position before `i` in a ring of `n`.
+fn before(i: usize, n: usize) -> usize {
+    if i == 0 { n - 1 } else { i - 1 }
 }
 
 /// Normal and gap of two crossing edges whose vertical distance above B's face is `height`.
