@@ -205,3 +205,49 @@ fn a_box_that_tips_over_an_edge_of_a_cut_floor_turns_as_over_the_whole_one() {
         }
     }
 }
+
+/// What of a body lies behind a plane: `across . p <= at`.
+fn behind(body: &Polyhedron, across: DVec3, at: f64) -> Polyhedron {
+    let height = |p: DVec3| across.dot(p) - at;
+    let crossing = |e| {
+        let [p, q] = body.edge(e).vertices.map(|v| body.vertex(v));
+        (height(p) * height(q) < 0.0).then(|| p.lerp(q, height(p) / (height(p) - height(q))))
+    };
+    let inside = body.vertices().iter().copied().filter(|p| height(*p) <= 0.0);
+    hull(&inside.chain(body.edges().filter_map(crossing)).collect::<Vec<_>>())
+}
+
+/// An edge of the part crosses the rim of a block with bevels close to a joint: the nearest plane of the piece that ends there is one
+/// of the same edge of the part and the joint's, and the felt one behind that is of this edge, too.
+#[test]
+fn two_edges_that_cross_beside_a_joint_are_felt_on_both_pieces() {
+    let ring = |half: f64, z: f64| {
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x * half, y * half, z) * 1e-3)
+    };
+    let block = hull(&[ring(20.0, -40.0), ring(40.0, -30.0), ring(40.0, -10.0), ring(20.0, 0.0)].concat());
+    let part = [
+        [10.160, -0.840, 6.667],
+        [-3.878, -6.490, -7.719],
+        [-5.158, -5.782, 7.123],
+        [5.435, -6.427, -0.833],
+        [8.289, -5.362, -3.894],
+        [-7.267, 1.753, 4.388],
+        [-7.392, 5.235, -0.192],
+    ];
+    let part = hull(&part.map(|p| DVec3::from_array(p) * 1e-3));
+    let across = DVec3::new(0.999_894_6, -0.014_518_7, 0.0);
+    let pieces = [behind(&block, -across, -0.003_986), behind(&block, across, 0.007_182)];
+    let rotation = DQuat::from_xyzw(0.199_665, -0.652_664, 0.0, 0.730_865).normalize();
+    let (mut felt, gains) = (0, Gains { law: LawKind::Pstar, ..Gains::default() });
+    for tick in 0..200 {
+        let along = f64::from(tick) * 1e-5 - 1e-3;
+        let hand = Pose::new(DVec3::new(0.011_444 + along, -0.023_631, 0.005_568), rotation);
+        let wrench =
+            |fixed: Vec<Polyhedron>| Renderer::new(world(vec![part.clone()], fixed)).render(&hand, &gains, 1e-3).wrench;
+        let (expected, found) = (wrench(vec![block.clone()]), wrench(pieces.to_vec()));
+        let apart = (found.force - expected.force).length();
+        assert!(apart < 1e-6, "{along} m along the rim: {found:?}, not {expected:?}");
+        felt += u32::from(expected.force.y.abs() > 0.02);
+    }
+    assert!(felt > 50, "{felt}");
+}

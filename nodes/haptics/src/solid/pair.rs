@@ -6,6 +6,7 @@ use cspace::{
     BasicContact, CFace, Edge, EdgeId, FaceId, Plane, Polyhedron, contact_point_turned, is_applicable_turned,
 };
 use spatial::DVec3;
+use std::slice;
 
 /// Cosine between normals from which on two C-faces of a pair count as one.
 pub(crate) const SAME: f64 = 0.999;
@@ -274,16 +275,23 @@ impl<'a> Pair<'a> {
         if best.is_some_and(|f| f.distance >= tie) {
             return best;
         }
+        let (live_a, live_b) = (self.solids.moving.live_edges(self.part), self.solids.fixed.live_edges(self.piece));
         // Edge contacts: walk from the best face contact, and from Near's own features, over adjacent edges.
         for start in [best.map(|f| f.contact), Some(near.contact)].into_iter().flatten() {
             let mut at = start;
             for _ in 0..4 {
                 let from = best;
-                for edge_a in edges_of_a(a, &at).iter().filter(|e| self.solids.moving.is_live_edge(self.part, **e)) {
+                // Beside two edges lie one of them and a neighbour of the other, too.
+                let (own_a, own_b) = match &at {
+                    BasicContact::TypeC { edge_a, edge_b } => (slice::from_ref(edge_a), slice::from_ref(edge_b)),
+                    _ => (&[][..], &[][..]),
+                };
+                let edges_a = own_a.iter().chain(edges_of_a(a, &at));
+                for edge_a in edges_a.filter(|e| live_a[e.index()]) {
                     let along_a = placed.r * a.edge_direction(*edge_a);
                     let on_a = placed.point(a.vertex(a.edge(*edge_a).vertices[0]));
-                    for edge_b in edges_of_b(b, &at).iter().filter(|e| self.solids.fixed.is_live_edge(self.piece, **e))
-                    {
+                    let edges_b = own_b.iter().chain(edges_of_b(b, &at));
+                    for edge_b in edges_b.filter(|e| live_b[e.index()]) {
                         if best.is_some_and(|o| !may_better(along_a, on_a, b, *edge_b, o.distance)) {
                             continue;
                         }

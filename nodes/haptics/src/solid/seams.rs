@@ -205,6 +205,11 @@ impl Seams {
         p.faces().map(|f| (0..p.face_vertices(f).len()).any(|side| rises(f, side))).collect()
     }
 
+    /// For each edge of the piece whether a contact on it can be felt at all.
+    pub fn live_edges(&self, piece: usize) -> &[bool] {
+        &self.live_edges[piece]
+    }
+
     /// Whether a contact on the edge can be felt at all.
     pub fn is_live_edge(&self, piece: usize, edge: EdgeId) -> bool {
         self.live_edges[piece][edge.index()]
