@@ -40,9 +40,9 @@ impl Renderer {
     #[must_use]
     pub fn with_friction(world: Arc<World>, friction: &[Option<Coefficients>]) -> Self {
         let own = world.fixed.iter().map(|p| friction.get(p.obstacle as usize).copied().flatten()).collect::<Vec<_>>();
-        let solids = Solids::new(world.clone());
+        let solids = Solids::new(world);
         Self {
-            sense: Sense::new(world, SCP_MARGIN),
+            sense: Sense::new(solids.world.clone(), SCP_MARGIN),
             depth_law: DepthLaw::new(&solids),
             proxy: Proxy::new(&solids, Friction::new(own)),
             solids,
@@ -54,7 +54,7 @@ impl Renderer {
         }
     }
 
-    /// What is in the scene.
+    /// What is in the scene, gaps between pieces closed that are too narrow to be meant.
     #[must_use]
     pub fn world(&self) -> &Arc<World> {
         &self.solids.world

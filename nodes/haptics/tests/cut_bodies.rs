@@ -251,3 +251,30 @@ fn two_edges_that_cross_beside_a_joint_are_felt_on_both_pieces() {
     }
     assert!(felt > 50, "{felt}");
 }
+
+/// Files of few digits leave gaps between the pieces of a floor: a tip does not fall into them.
+#[test]
+fn a_tip_led_over_gaps_that_rounding_left_feels_a_whole_floor() {
+    let floor = |x: [f64; 2]| cuboid(DVec3::new(x[0], -0.04, -0.03), DVec3::new(x[1], 0.04, 0.0));
+    let ring = (0..8).map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4);
+    let mut corners: Vec<DVec3> = ring.map(|a| DVec3::new(1.5e-3 * a.cos(), 1.5e-3 * a.sin(), 0.03)).collect();
+    corners.push(DVec3::NEG_Z * 0.03);
+    let tip = || hull(&corners);
+    for (gap, law) in [1e-8, 1e-7, 1e-6].into_iter().flat_map(|gap| LAWS.map(|law| (gap, law))) {
+        let whole = world(vec![tip()], vec![floor([-0.05, 0.05])]);
+        let cut =
+            world(vec![tip()], vec![floor([-0.05, -0.01]), floor([-0.01 + gap, 0.015]), floor([0.015 + gap, 0.05])]);
+        let gains = Gains { law, ..Gains::default() };
+        let (mut a, mut b) = (Renderer::new(whole), Renderer::new(cut));
+        for tick in 0..1000 {
+            let s = f64::from(tick) * 1e-3;
+            let turn = DQuat::from_rotation_x(0.2 * (3.0 * s).sin()) * DQuat::from_rotation_y(0.2 * (2.0 * s).cos());
+            let at = DVec3::new(0.035 * (9.0 * s).sin(), 0.03 * (7.0 * s).sin(), -4e-4 * (1.0 - (25.0 * s).cos()));
+            let hand = Pose::new(at - turn * corners[8], turn);
+            let (expected, found) = (a.render(&hand, &gains, 1e-3).wrench, b.render(&hand, &gains, 1e-3).wrench);
+            let same =
+                (found.force - expected.force).length() < 1e-6 && (found.torque - expected.torque).length() < 1e-6;
+            assert!(same, "gap {gap}, {law:?}, tick {tick}: {found:?}, not {expected:?}");
+        }
+    }
+}

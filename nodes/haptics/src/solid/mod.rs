@@ -3,6 +3,7 @@
 mod cover;
 mod facing;
 mod features;
+mod gaps;
 mod hollow;
 mod pair;
 mod placed;

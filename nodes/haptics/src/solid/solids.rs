@@ -1,5 +1,6 @@
 //! The two assemblies in contact, with their seams.
 
+use crate::solid::gaps::closed;
 use crate::solid::seams::Seams;
 use crate::solid::sharpness::Sharpness;
 use crate::solid::{Cover, Placed};
@@ -7,7 +8,7 @@ use cspace::{BasicContact, FaceId, Polyhedron, World};
 use spatial::DVec3;
 use std::sync::Arc;
 
-/// The world with the seams of both sides.
+/// The world, narrow gaps between pieces closed, with the seams of both sides.
 #[derive(Clone, Debug)]
 pub(crate) struct Solids {
     pub world: Arc<World>,
@@ -22,6 +23,7 @@ pub(crate) struct Solids {
 
 impl Solids {
     pub fn new(world: Arc<World>) -> Self {
+        let world = closed(world);
         let moving = Seams::new(world.moving.clone());
         let fixed = Seams::new(world.fixed.iter().map(|p| p.polyhedron.clone()).collect());
         let is_hollow = moving.has_hollow() || fixed.has_hollow();
