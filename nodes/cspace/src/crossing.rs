@@ -18,6 +18,20 @@ pub(crate) struct Crossing {
     pub steady: f64,
 }
 
+impl Crossing {
+    /// Which end of A's arc lies on the side of an end of B's edge.
+    #[inline]
+    pub(crate) fn arc_at_b(&self, end: usize) -> usize {
+        if end == 1 { self.a_at_b1 } else { 1 - self.a_at_b1 }
+    }
+
+    /// Which end of B's arc lies on the side of an end of A's edge.
+    #[inline]
+    pub(crate) fn arc_at_a(&self, end: usize) -> usize {
+        if end == 1 { self.b_at_a1 } else { 1 - self.b_at_a1 }
+    }
+}
+
 impl Placed<'_> {
     /// Whether two edges' Gauss arcs surely cross, whatever the tie break says, in a multiple of `normal`, if B's faces' normals lie
     /// on both sides of A's edge by `p`: see [`Placed::crossing`].

@@ -14,11 +14,10 @@
 //! * Else the other half gives `r sin t'`, with `t' <= t` the angle from its normal: together with `e cos t'` or more,
 //!   less `s sin t'`, if `t'` is acute; if not, `sin t' >= sin t`, together with `e cos t` or more.
 
-use crate::BasicContact;
 use crate::crossing::true_normal;
 use crate::parallelogram::Parallelogram;
 use crate::placed::Placed;
-use crate::walk::Found;
+use crate::{BasicContact, CFace};
 use spatial::DVec3;
 
 /// The two sides of a C-face that a point of its plane is nearest to.
@@ -45,20 +44,22 @@ fn two_largest(numbers: impl Iterator<Item = f64>) -> ([f64; 2], usize) {
 }
 
 impl Placed<'_> {
-    /// What the disc about the SCP may count for, metres: see above. `near` is settled and `x` inside of its plane.
-    pub(crate) fn folded_disc(&self, near: &Found) -> f64 {
-        let Some(home) = self.nearest_sides(near.face.contact, DVec3::ZERO, true) else { return near.inside };
+    /// What the disc about the SCP may count for, metres: see above. No neighbour of `near` is better, its sides lie `inside`
+    /// metres or more from the SCP, and `x` is inside of its plane.
+    pub(crate) fn folded_disc(&self, near: &CFace, inside: f64) -> f64 {
+        let Some(home) = self.nearest_sides(near.contact, DVec3::ZERO, Some(near.normal_w)) else { return inside };
         let s = -home.beyond[0];
-        let to_side = home.out_w * s - near.face.normal_w * near.face.distance;
-        match self.nearest_sides(home.across, to_side, false) {
-            Some(away) if s >= 0.0 => near.inside.max((-home.beyond[1] - s).min(-away.beyond[1]) - s),
-            _ => near.inside,
+        let to_side = home.out_w * s - near.normal_w * near.distance;
+        match self.nearest_sides(home.across, to_side, None) {
+            Some(away) if s >= 0.0 => inside.max((-home.beyond[1] - s).min(-away.beyond[1]) - s),
+            _ => inside,
         }
     }
 
-    /// The sides of an applicable node's C-face that `x + shift` is nearest to, and, if wanted, what lies across the
-    /// first; none where edges are too nearly parallel.
-    fn nearest_sides(&self, node: BasicContact, shift: DVec3, across: bool) -> Option<Nearest> {
+    /// The sides of an applicable node's C-face that `x + shift` is nearest to; and what lies across the first, if its normal is
+    /// known. None where edges are too nearly parallel.
+    fn nearest_sides(&self, node: BasicContact, shift: DVec3, normal_w: Option<DVec3>) -> Option<Nearest> {
+        let across = normal_w.is_some();
         match node {
             BasicContact::TypeB { vertex_a: v, face_b: f } => {
                 let p = self.point_in_w(self.a.points[v.index()]) + shift;
@@ -79,7 +80,10 @@ impl Placed<'_> {
             BasicContact::TypeC { edge_a: e, edge_b: g } => {
                 let (rod_a, rod_b) = (&self.a.rods[e.index()], &self.b.rods[g.index()]);
                 let u = self.turn_to_w(rod_a.dir);
-                let n = true_normal(rod_b.faces.map(|f| self.b.planes[f as usize].0), u)?.normalize();
+                let n = match normal_w {
+                    Some(n) => n,
+                    None => true_normal(rod_b.faces.map(|f| self.b.planes[f as usize].0), u)?.normalize(),
+                };
                 let w = self.between_edges(e.0, g.0) + shift;
                 let face = Parallelogram::new(n, w, (u, rod_a.length), (rod_b.dir, rod_b.length));
                 let sides = [face.beyond_b[0], face.beyond_b[1], face.beyond_a[0], face.beyond_a[1]];
@@ -88,11 +92,10 @@ impl Placed<'_> {
                 let along = n.cross(if at_b { u } else { rod_b.dir });
                 let inward = if at_b { along.dot(rod_b.dir) } else { -along.dot(u) };
                 let out_w = if (inward < 0.0) == (end == 1) { -along } else { along };
-                let next = if across {
-                    let c = self.crossing(e.0, g.0)?;
-                    if at_b { self.across_at_b(e.0, g.0, end, &c).0 } else { self.across_at_a(e.0, g.0, end, &c).0 }
-                } else {
-                    node
+                let next = match (across, at_b) {
+                    (false, _) => node,
+                    (true, true) => self.across_at_b(e.0, g.0, end, n, self.arc_at_b(e.0, g.0, end)).0,
+                    (true, false) => self.across_at_a(e.0, g.0, end, n, self.arc_at_a(e.0, g.0, end)).0,
                 };
                 Some(Nearest { beyond, out_w, across: next })
             }

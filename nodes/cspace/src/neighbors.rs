@@ -6,7 +6,7 @@
 
 use crate::BasicContact;
 use crate::c_face::{type_a, type_b, type_c};
-use crate::crossing::{Crossing, first_crossing};
+use crate::crossing::first_crossing;
 use crate::ids::NO_EDGE;
 use crate::placed::Placed;
 use spatial::DVec3;
@@ -34,27 +34,55 @@ impl Placed<'_> {
         }
     }
 
-    /// Across the side of a type-C C-face at an end of B's edge: along A's arc, in the cell of that vertex of B.
-    pub(crate) fn across_at_b(&self, edge_a: u32, edge_b: u32, end: usize, c: &Crossing) -> (BasicContact, DVec3) {
+    /// Across the side of a type-C C-face with this normal at an end of B's edge: along A's arc to `arc_end`, in the cell of that
+    /// vertex of B.
+    pub(crate) fn across_at_b(
+        &self,
+        edge_a: u32,
+        edge_b: u32,
+        end: usize,
+        normal: DVec3,
+        arc_end: usize,
+    ) -> (BasicContact, DVec3) {
         let (rod_a, rod_b) = (&self.a.rods[edge_a as usize], &self.b.rods[edge_b as usize]);
-        let i = if end == 1 { c.a_at_b1 } else { 1 - c.a_at_b1 };
-        let (vertex, target) = (rod_b.vertices[end], c.arc_a[i]);
-        match first_crossing(self.b.spokes(vertex), -c.normal, -target, edge_b) {
-            None => (type_a(rod_a.faces[i], vertex), target),
-            Some((e, t)) => (type_c(edge_a, e), (c.normal + (target - c.normal) * t).normalize()),
+        let (vertex, face) = (rod_b.vertices[end], rod_a.faces[arc_end]);
+        let target = -self.turn_to_w(self.a.normals_turned[face as usize]);
+        match first_crossing(self.b.spokes(vertex), -normal, -target, edge_b) {
+            None => (type_a(face, vertex), target),
+            Some((e, t)) => (type_c(edge_a, e), (normal + (target - normal) * t).normalize()),
         }
     }
 
     /// Across the side at an end of A's edge: along B's arc, in the cell of that vertex of A.
-    pub(crate) fn across_at_a(&self, edge_a: u32, edge_b: u32, end: usize, c: &Crossing) -> (BasicContact, DVec3) {
+    pub(crate) fn across_at_a(
+        &self,
+        edge_a: u32,
+        edge_b: u32,
+        end: usize,
+        normal: DVec3,
+        arc_end: usize,
+    ) -> (BasicContact, DVec3) {
         let (rod_a, rod_b) = (&self.a.rods[edge_a as usize], &self.b.rods[edge_b as usize]);
-        let i = if end == 1 { c.b_at_a1 } else { 1 - c.b_at_a1 };
-        let (vertex, face) = (rod_a.vertices[end], rod_b.faces[i]);
+        let (vertex, face) = (rod_a.vertices[end], rod_b.faces[arc_end]);
         let target = self.b.planes[face as usize].0;
-        match first_crossing(self.a.spokes(vertex), self.turn_to_a(c.normal), self.turn_to_a(target), edge_a) {
+        match first_crossing(self.a.spokes(vertex), self.turn_to_a(normal), self.turn_to_a(target), edge_a) {
             None => (type_b(vertex, face), target),
-            Some((e, t)) => (type_c(e, edge_b), (c.normal + (target - c.normal) * t).normalize()),
+            Some((e, t)) => (type_c(e, edge_b), (normal + (target - normal) * t).normalize()),
         }
+    }
+
+    /// Which end of A's arc lies on the side of an end of B's edge, where the two edges' arcs cross.
+    pub(crate) fn arc_at_b(&self, edge_a: u32, edge_b: u32, end: usize) -> usize {
+        let (rod_a, rod_b) = (&self.a.rods[edge_a as usize], &self.b.rods[edge_b as usize]);
+        let second = self.turn_to_w(self.a.normals_turned[rod_a.faces[1] as usize]).dot(rod_b.dir) < 0.0;
+        usize::from(second == (end == 1))
+    }
+
+    /// Which end of B's arc lies on the side of an end of A's edge.
+    pub(crate) fn arc_at_a(&self, edge_a: u32, edge_b: u32, end: usize) -> usize {
+        let (rod_a, rod_b) = (&self.a.rods[edge_a as usize], &self.b.rods[edge_b as usize]);
+        let second = self.b.planes[rod_b.faces[1] as usize].0.dot(self.turn_to_w(rod_a.dir_turned)) < 0.0;
+        usize::from(second == (end == 1))
     }
 
     /// Hands over the C-faces across every side of an applicable node.
@@ -73,8 +101,8 @@ impl Placed<'_> {
             BasicContact::TypeC { edge_a: e, edge_b: g } => {
                 if let Some(c) = self.crossing(e.0, g.0) {
                     for end in 0..2 {
-                        found(self.across_at_b(e.0, g.0, end, &c).0);
-                        found(self.across_at_a(e.0, g.0, end, &c).0);
+                        found(self.across_at_b(e.0, g.0, end, c.normal, c.arc_at_b(end)).0);
+                        found(self.across_at_a(e.0, g.0, end, c.normal, c.arc_at_a(end)).0);
                     }
                 }
             }

@@ -90,20 +90,20 @@ impl Placed<'_> {
         let (e, under) = (-distance, (-distance).max(0.0));
         let face = Parallelogram::new(n, w, (c.dir_a, rod_a.length), (rod_b.dir, rod_b.length));
         // The ends of the arcs that the sides stand for.
-        let face_b = |end: usize| rod_b.faces[if end == 1 { c.b_at_a1 } else { 1 - c.b_at_a1 }] as usize;
-        let cosines_b = [n.dot(c.arc_a[1 - c.a_at_b1]), n.dot(c.arc_a[c.a_at_b1])];
+        let face_b = |end: usize| rod_b.faces[c.arc_at_a(end)] as usize;
+        let cosines_b = [0, 1].map(|end| n.dot(c.arc_a[c.arc_at_b(end)]));
         let cosines_a = [n.dot(self.b.planes[face_b(0)].0), n.dot(self.b.planes[face_b(1)].0)];
         for end in 0..2 {
             let (s, cosine) = (face.beyond_b[end], cosines_b[end]);
             if may_win(s, under, cosine, eps) {
                 *planes += 1;
-                let (next, m) = self.across_at_b(edge_a, edge_b, end, c);
+                let (next, m) = self.across_at_b(edge_a, edge_b, end, n, c.arc_at_b(end));
                 best.offer(s, e, n, m, eps, next);
             }
             let (s, cosine) = (face.beyond_a[end], cosines_a[end]);
             if may_win(s, under, cosine, eps) {
                 *planes += 1;
-                let (next, m) = self.across_at_a(edge_a, edge_b, end, c);
+                let (next, m) = self.across_at_a(edge_a, edge_b, end, n, c.arc_at_a(end));
                 best.offer(s, e, n, m, eps, next);
             }
         }
@@ -122,6 +122,6 @@ impl Placed<'_> {
 
 /// Whether a neighbour between here and the end of the arc (cosine of the angle to it) could be better.
 #[inline]
-fn may_win(s: f64, under: f64, cosine: f64, eps: f64) -> bool {
+pub(crate) fn may_win(s: f64, under: f64, cosine: f64, eps: f64) -> bool {
     s > eps || (under > 0.0 && under * under * (1.0 - cosine) >= (s - eps) * (s - eps) * (1.0 + cosine))
 }

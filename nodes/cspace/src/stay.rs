@@ -3,8 +3,12 @@
 use crate::crossing::normal_between;
 use crate::parallelogram::{Parallelogram, larger};
 use crate::placed::Placed;
+use crate::sides::{Best, may_win};
 use crate::{BasicContact, Body, CFace};
 use spatial::DVec3;
+
+/// What is asked of the cosine of an angle between normals beyond rounding and ties.
+const SLACK: f64 = 1e-9;
 
 impl Placed<'_> {
     /// The plane of an applicable node, and how far x's projection lies inside of the C-face's sides, metres; none if
@@ -46,6 +50,54 @@ impl Placed<'_> {
             }
         };
         Some((CFace { contact: node, normal_w, distance }, inside))
+    }
+
+    /// The same by a look at each neighbour that could be better.
+    #[inline]
+    pub(crate) fn stay_among(&self, node: BasicContact, crosses: bool) -> Option<(CFace, f64)> {
+        let mut best = Best::NONE;
+        let (normal_w, sides) = match node {
+            BasicContact::TypeB { vertex_a, face_b } => {
+                let p = self.point_in_w(self.a.points[vertex_a.index()]);
+                let sides = self.vertex_face::<false>(vertex_a.0, face_b.0, p, &mut best, &mut 0);
+                (self.b.planes[face_b.index()].0, sides)
+            }
+            BasicContact::TypeA { face_a, vertex_b } => {
+                let q = self.point_in_a(self.b.points[vertex_b.index()]);
+                let sides = self.vertex_face::<true>(vertex_b.0, face_a.0, q, &mut best, &mut 0);
+                (-self.turn_to_w(self.a.planes[face_a.index()].0), sides)
+            }
+            BasicContact::TypeC { edge_a, edge_b } => return self.edges_stay(edge_a.0, edge_b.0, crosses),
+        };
+        let face = CFace { contact: node, normal_w, distance: sides.distance };
+        best.node.is_none().then_some((face, sides.inside))
+    }
+
+    /// The same of two edges: none if a plane between theirs and the end of an arc could be nearer.
+    fn edges_stay(&self, edge_a: u32, edge_b: u32, crosses: bool) -> Option<(CFace, f64)> {
+        let (rod_a, rod_b) = (&self.a.rods[edge_a as usize], &self.b.rods[edge_b as usize]);
+        let u = self.turn_to_w(rod_a.dir);
+        let normals_b = rod_b.faces.map(|f| self.b.planes[f as usize].0);
+        let p = normals_b.map(|n| n.dot(u));
+        let n = normal_between(normals_b, p)?;
+        if !(crosses || self.surely_cross(edge_a, edge_b, p, n)) {
+            return None;
+        }
+        let n = n.normalize();
+        let w = self.between_edges(edge_a, edge_b);
+        let distance = n.dot(w);
+        let face = Parallelogram::new(n, w, (u, rod_a.length), (rod_b.dir, rod_b.length));
+        // The arcs' ends, each on the side of an end of the other edge.
+        let (n_a, v_a) = (self.turn_to_a(n), self.turn_to_a(rod_b.dir));
+        let normals_a = rod_a.faces.map(|f| self.a.planes[f as usize].0);
+        let (a_at_b1, b_at_a1) = (usize::from(normals_a[1].dot(v_a) < 0.0), usize::from(p[1] < 0.0));
+        let under = (-distance).max(0.0);
+        let stays = |s: f64, cosine: f64| !may_win(s, under, cosine - SLACK, 0.0);
+        let at_b = [1 - a_at_b1, a_at_b1].map(|k| -n_a.dot(normals_a[k]));
+        let at_a = [1 - b_at_a1, b_at_a1].map(|k| n.dot(normals_b[k]));
+        let all = (0..2).all(|end| stays(face.beyond_b[end], at_b[end]) && stays(face.beyond_a[end], at_a[end]));
+        let contact = crate::c_face::type_c(edge_a, edge_b);
+        all.then_some((CFace { contact, normal_w: n, distance }, -face.outermost()))
     }
 }
 

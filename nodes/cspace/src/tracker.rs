@@ -37,6 +37,13 @@ pub struct Tracked {
 }
 
 impl Tracked {
+    /// Near as it was, with nothing more to say.
+    #[inline]
+    fn quick(near: CFace) -> Self {
+        let distance = near.distance;
+        Self { near, depth: (-distance).max(0.0), distance, divergent: false, reseeded: false, planes: 1 }
+    }
+
     /// Whether no contact takes place.
     #[must_use]
     pub fn is_free(&self) -> bool {
@@ -107,17 +114,22 @@ impl PairState {
             && let Some((near, inside)) = placed.stay(self.near, sure, self.tan_half)
             && (near.distance > 0.0 || self.certificate.proves(&placed, &near, inside))
         {
-            let distance = near.distance;
-            return Tracked {
-                near,
-                depth: (-distance).max(0.0),
-                distance,
-                divergent: false,
-                reseeded: false,
-                planes: 1,
-            };
+            return Tracked::quick(near);
+        }
+        if steady && let Some(near) = self.second_look(&placed, sure) {
+            return Tracked::quick(near);
         }
         self.full_step(&placed, scratch, steady, travel2 + CHORD2 * a.radius * a.radius * chord2)
+    }
+
+    /// Near, where a closer look at its neighbours and at the fold along its side settle what a quick step left open.
+    #[inline(never)]
+    fn second_look(&self, placed: &Placed<'_>, sure: bool) -> Option<CFace> {
+        let (near, inside) = placed.stay_among(self.near, sure)?;
+        let proven = near.distance > 0.0
+            || self.certificate.proves(placed, &near, inside)
+            || self.certificate.proves(placed, &near, placed.folded_disc(&near, inside));
+        proven.then_some(near)
     }
 
     /// Whether Near is surely applicable; of two edges [`Placed::stay`] tells.
@@ -188,7 +200,7 @@ impl PairState {
     /// Whether the depth of a settled node is known to be the global one.
     fn proves(&self, placed: &Placed<'_>, near: &Found) -> bool {
         self.certificate.proves(placed, &near.face, near.inside)
-            || near.settled && self.certificate.proves(placed, &near.face, placed.folded_disc(near))
+            || near.settled && self.certificate.proves(placed, &near.face, placed.folded_disc(&near.face, near.inside))
     }
 
     /// Walks through poses between the last one and this one. True if that would take too many: then Near is lost.
