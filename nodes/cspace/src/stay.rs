@@ -52,19 +52,19 @@ impl Placed<'_> {
         Some((CFace { contact: node, normal_w, distance }, inside))
     }
 
-    /// The same by a look at each neighbour that could be better.
+    /// The same by a look at each neighbour that could be better. `planes` counts them.
     #[inline]
-    pub(crate) fn stay_among(&self, node: BasicContact, crosses: bool) -> Option<(CFace, f64)> {
+    pub(crate) fn stay_among(&self, node: BasicContact, crosses: bool, planes: &mut u32) -> Option<(CFace, f64)> {
         let mut best = Best::NONE;
         let (normal_w, sides) = match node {
             BasicContact::TypeB { vertex_a, face_b } => {
                 let p = self.point_in_w(self.a.points[vertex_a.index()]);
-                let sides = self.vertex_face::<false>(vertex_a.0, face_b.0, p, &mut best, &mut 0);
+                let sides = self.vertex_face::<false>(vertex_a.0, face_b.0, p, &mut best, planes);
                 (self.b.planes[face_b.index()].0, sides)
             }
             BasicContact::TypeA { face_a, vertex_b } => {
                 let q = self.point_in_a(self.b.points[vertex_b.index()]);
-                let sides = self.vertex_face::<true>(vertex_b.0, face_a.0, q, &mut best, &mut 0);
+                let sides = self.vertex_face::<true>(vertex_b.0, face_a.0, q, &mut best, planes);
                 (-self.turn_to_w(self.a.planes[face_a.index()].0), sides)
             }
             BasicContact::TypeC { edge_a, edge_b } => return self.edges_stay(edge_a.0, edge_b.0, crosses),

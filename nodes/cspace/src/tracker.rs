@@ -69,6 +69,8 @@ pub(crate) struct PairState {
     known2: f64,
     /// See [`Found::tan_half`].
     tan_half: f64,
+    /// The last full step ended where it began, and was sure of it.
+    stayed: bool,
     seeded: bool,
 }
 
@@ -83,6 +85,7 @@ impl PairState {
         chord2: 0.0,
         known2: 0.0,
         tan_half: 0.0,
+        stayed: false,
         seeded: false,
     };
 
@@ -116,20 +119,24 @@ impl PairState {
         {
             return Tracked::quick(near);
         }
-        if steady && let Some(near) = self.second_look(&placed, sure) {
-            return Tracked::quick(near);
+        if steady
+            && self.stayed
+            && let Some(tracked) = self.second_look(&placed, sure)
+        {
+            return tracked;
         }
         self.full_step(&placed, scratch, steady, travel2 + CHORD2 * a.radius * a.radius * chord2)
     }
 
     /// Near, where a closer look at its neighbours and at the fold along its side settle what a quick step left open.
     #[inline(never)]
-    fn second_look(&self, placed: &Placed<'_>, sure: bool) -> Option<CFace> {
-        let (near, inside) = placed.stay_among(self.near, sure)?;
+    fn second_look(&self, placed: &Placed<'_>, sure: bool) -> Option<Tracked> {
+        let mut planes = 1;
+        let (near, inside) = placed.stay_among(self.near, sure, &mut planes)?;
         let proven = near.distance > 0.0
             || self.certificate.proves(placed, &near, inside)
             || self.certificate.proves(placed, &near, placed.folded_disc(&near, inside));
-        proven.then_some(near)
+        proven.then_some(Tracked { planes, ..Tracked::quick(near) })
     }
 
     /// Whether Near is surely applicable; of two edges [`Placed::stay`] tells.
@@ -185,9 +192,11 @@ impl PairState {
             near = self.seed(placed, scratch, &mut planes);
         }
         let mut divergent = false;
+        self.stayed = near.face.contact == self.near;
         if near.face.distance > 0.0 {
             self.rival = None;
         } else if self.rival.is_some() || !self.proves(placed, &near) {
+            self.stayed = false;
             (near, divergent) = self.examine(placed, near, scratch, &mut reseeded, &mut planes);
         }
         self.near = near.face.contact;
