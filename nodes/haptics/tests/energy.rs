@@ -118,3 +118,73 @@ fn friction_in_a_corner_adds_up_and_never_drives() {
         assert!(sum < -0.02 * size, "{k}: {sum:e} of {size:e}");
     }
 }
+
+/// Within one contact formation the depth laws are minus the gradient of the energy: what a loop leaves over is the trapezoid
+/// rule's, which falls with the square of the step.
+#[test]
+fn depth_laws_return_what_they_took_while_the_contact_stays_the_same() {
+    let tau = std::f64::consts::TAU;
+    let w = world(block(mm(20.0, 16.0, 10.0)), vec![cuboid(mm(-40.0, -40.0, -20.0), mm(12.0, 40.0, 0.0))]);
+    // One corner on the top; and an edge over the border.
+    let vertex = |s: f64| {
+        let (c, d) = ((tau * s).cos(), (tau * s).sin());
+        let p = pose(3.0 * d - 8.0, 4.0 * c, 0.0, 0.3 + 0.05 * d, 0.4 + 0.04 * c, 0.1 * d);
+        lowered(p, mm(10.0, 8.0, 5.0), 6e-4 + 3e-4 * (2.0 * tau * s).sin())
+    };
+    let edges = |s: f64| {
+        let (c, d) = ((tau * s).cos(), (tau * s).sin());
+        pose(15.2 + 0.1 * d, 2.0 * c, 6.0 + 0.1 * c, 0.25 + 0.01 * d, 0.7 + 0.01 * c, 0.02 * d)
+    };
+    let paths: [(&str, &dyn Fn(f64) -> Pose); 2] = [("vertex-face", &vertex), ("edge-edge", &edges)];
+    for (name, path) in paths {
+        for law in [LawKind::Paper, LawKind::Pstar, LawKind::Blended] {
+            let gains = Gains { law, ..Gains::default() };
+            let part = |n: u32| {
+                let (sum, size) = work(&w, &gains, path, n);
+                println!("{law:?}, {name}, {n} steps: {sum:e} J of {size:e} J moved");
+                assert!(size > 1e-5, "{law:?}, {name}: {size:e} J moved");
+                sum.abs() / size
+            };
+            let (coarse, fine) = (part(2_000), part(40_000));
+            assert!(fine <= 1e-9 && fine < 0.01 * coarse, "{law:?}, {name}: {coarse:e}, {fine:e}");
+        }
+    }
+}
+
+/// The pose at the height at which a box of these half sides is `depth` metres deep in the plane z = 0.
+fn lowered(p: Pose, half: DVec3, depth: f64) -> Pose {
+    let lowest = p.rotation_matrix().transpose().z_axis.abs().dot(half);
+    Pose::new(DVec3::new(p.translation.x, p.translation.y, lowest - depth), p.rotation)
+}
+
+/// Where contacts come and go the torque of `paper` and `pstar` is still minus the gradient of the energy, which has kinks there: a
+/// trapezoid across one errs by as much as its step is long. Only where two contacts' depths differ by less than what counts as
+/// equal, a millionth of the size, it is that of the edge or the face: what that leaves over is the force times this. `blended` rounds the kinks off, by rule and not by a gradient, while
+/// the part tilts by what the contacts fade over: no more than a part of the force times that depth is gained or lost.
+#[test]
+fn rocking_loops_are_bounded_by_the_step_and_by_the_blend() {
+    let tau = std::f64::consts::TAU;
+    let half = mm(20.0, 16.0, 10.0);
+    let w = world(block(2.0 * half), vec![cuboid(mm(-150.0, -150.0, -20.0), mm(150.0, 150.0, 0.0))]);
+    let rocking = |s: f64| {
+        let (c, d) = ((tau * s).cos(), (tau * s).sin());
+        let p = pose(20.0 * d, 15.0 * c, 0.0, 0.02 * (2.0 * tau * s).sin(), 0.02 * (3.0 * tau * s).cos(), 0.1 * d);
+        lowered(p, half, 3e-4 + 6e-4 * (2.0 * tau * s).sin())
+    };
+    for law in [LawKind::Paper, LawKind::Pstar] {
+        let gains = Gains { law, ..Gains::default() };
+        let part = |n: u32| {
+            let (sum, size) = work(&w, &gains, &rocking, n);
+            println!("{law:?}, rocking, {n} steps: {sum:e} J of {size:e} J moved");
+            sum.abs() / size
+        };
+        let (coarse, fine) = (part(2_000), part(16_000));
+        assert!(fine <= 0.2 * coarse && fine <= 3e-4, "{law:?}: {coarse:e}, {fine:e}");
+    }
+    for blend_depth in [5e-4, 5e-5] {
+        let gains = Gains { law: LawKind::Blended, blend_depth, ..Gains::default() };
+        let (sum, size) = work(&w, &gains, &rocking, 8_000);
+        println!("Blended over {blend_depth:e} m, rocking: {sum:e} J of {size:e} J moved");
+        assert!(sum.abs() <= 0.3 * 0.9 * blend_depth, "{sum:e} J of {size:e} J moved");
+    }
+}
