@@ -1,14 +1,13 @@
 //! Where planes leave no room between them: the point that they agree on best.
 
 use crate::projection::Row;
+use crate::solid::OnePlane;
 use spatial::{DMat3, DVec3};
 
 /// How much more the square of a violation weighs than the square of the way.
 const WEIGHT: f64 = 100.0;
 /// Rounds of Newton's method, which needs one for each set of violated rows that it comes by.
 const ROUNDS: usize = 16;
-/// Rows whose normals (of length one) and offsets (metres) differ by less than this are one.
-const EQUAL: f64 = 1e-9;
 
 /// What the rows agree on best.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,8 +82,8 @@ fn violation(row: &Row<3>, z: DVec3) -> f64 {
 }
 
 fn is_equal(r: &Row<3>, s: &Row<3>) -> bool {
-    (r.offset - s.offset).abs() <= EQUAL
-        && DVec3::from_array(r.normal).distance_squared(DVec3::from_array(s.normal)) <= EQUAL * EQUAL
+    let plane = |r: &Row<3>| (DVec3::from_array(r.normal), r.offset);
+    OnePlane::EXACT.holds(plane(r), plane(s))
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ mod shares;
 pub(crate) use scp::SCP_MARGIN;
 
 use crate::region::{Clipper, RegionPoint, Scope, TIED, push_within, tied_contacts};
-use crate::solid::{Pair, Placed, Sensed, Solids};
+use crate::solid::{OnePlane, Pair, Placed, Sensed, Solids};
 use crate::{ContactPoint, FormationKind, Gains, LawKind, LawOutput};
 use cspace::{BasicContact, contact_point_turned};
 use paper_torque::torque;
@@ -17,9 +17,6 @@ use reduced_hull::nearest_point;
 use scp::{Scp, Touch};
 use shares::Shares;
 use spatial::{DVec3, Pose};
-
-/// Planes are one constraint when their normals differ by less than this (radians) and their offsets by this part of the part's size.
-const EQUAL: f64 = 4e-6;
 
 /// Scratch of the depth laws, and whether contact was multiple at the last tick.
 #[derive(Debug)]
@@ -238,6 +235,5 @@ impl DepthLaw {
 
 /// Whether two planes are one constraint.
 fn is_equal(t: &Touch, u: &Touch) -> bool {
-    u.plane.normal_w.distance_squared(t.plane.normal_w) <= EQUAL * EQUAL
-        && (u.plane.distance - t.plane.distance).abs() <= EQUAL * t.tie / TIED
+    OnePlane::REGION.of_size(t.tie / TIED).holds_for(&t.plane, &u.plane)
 }

@@ -3,7 +3,7 @@
 use crate::formation::{ContactFormation, ContactPoint, FormationKind};
 use crate::proxy::step::Step;
 use crate::region::{Clipper, RegionPoint, Scope, most_parallel, push_within};
-use crate::solid::{Covered, Pair, Placed, Sense, Sensed, Solids, TURN, each_hollow_end};
+use crate::solid::{Covered, OnePlane, Pair, Placed, Sense, Sensed, Solids, TURN, each_hollow_end};
 use cspace::{BasicContact, CFace};
 use spatial::{DVec3, Pose};
 
@@ -20,10 +20,6 @@ const BESIDE: f64 = 1e-6;
 const TIE: f64 = 1e-9;
 /// A motion within which no C-face ties is known no farther than this, metres.
 const UNTIED: f64 = 1e-3;
-/// Planes of pairs whose signed distances (metres) and normals (radians) differ by no more than these are one wall's: files of
-/// single precision hold pieces no closer together.
-const ONE_PLANE: f64 = 1e-7;
-const ONE_NORMAL: f64 = 1e-5;
 /// Most planes of pairs that are replaced together.
 const TOGETHER: usize = 8;
 /// Bounds of the reach, metres.
@@ -52,11 +48,6 @@ pub(crate) struct Replaced {
     count: usize,
     /// How many of them were listed before the one that was asked for.
     pub before: usize,
-}
-
-/// Whether two planes are one wall's.
-fn is_one_plane(c: &CFace, d: &CFace) -> bool {
-    (c.distance - d.distance).abs() <= ONE_PLANE && c.normal_w.distance_squared(d.normal_w) <= ONE_NORMAL * ONE_NORMAL
 }
 
 /// A plane that no other ties with while the proxy stays near a pose: within `room` (metres) and `turn` (radians).
@@ -281,9 +272,10 @@ impl View {
         let mut i = 0;
         for _ in 0..self.pairs.len() - 1 {
             let pair = self.pairs[i];
-            let same_wall = replaced.count < TOGETHER && is_one_plane(&pair.plane, &wall);
-            let tied = same_wall.then(|| self.plane_tied_within(ONE_PLANE, solids, i, pose, placed)).flatten();
-            let Some(tied) = tied.filter(|tied| is_one_plane(tied, plane)) else {
+            let same_wall = replaced.count < TOGETHER && OnePlane::WALL.holds_for(&pair.plane, &wall);
+            let tied =
+                same_wall.then(|| self.plane_tied_within(OnePlane::WALL.offsets, solids, i, pose, placed)).flatten();
+            let Some(tied) = tied.filter(|tied| OnePlane::WALL.holds_for(tied, plane)) else {
                 i += 1;
                 continue;
             };

@@ -5,7 +5,7 @@ mod refine;
 
 use crate::projection::{Projection, Row};
 use crate::region::TIED;
-use crate::solid::{Covered, Pair, Placed, SAME, Sense, Sensed, Solids, facing_point};
+use crate::solid::{Covered, OnePlane, Pair, Placed, SAME, Sense, Sensed, Solids, facing_point};
 use cspace::{BasicContact, CFace};
 use hold::Held;
 use spatial::{DVec3, Pose};
@@ -16,8 +16,6 @@ pub(crate) const SCP_MARGIN: f64 = 5e-3;
 const FREED: f64 = 1e-9;
 /// A felt plane that lies no more than this part of the depth behind its seam is taken without a look at others.
 const CLOSE: f64 = 0.1;
-/// Normals that differ by less than this, radians, are one wall's.
-const PARALLEL: f64 = 1e-12;
 /// Another plane of a pair is taken where the square of the way to the SCP becomes less than this part of it.
 const NEARER: f64 = 1.0 - 1e-6;
 /// An SCP farther than this many depths from the hand is compared with what other starts lead to.
@@ -275,10 +273,7 @@ impl Scp {
             facing_point(&Pair::new(solids, part, piece, scp), &CFace { distance: 0.0, ..*plane }, FREED).is_some()
         };
         // Of the pieces that one wall is cut into, any may carry the force, and any other be touched.
-        let same_wall = |t: &Touch, u: &Touch| {
-            (t.plane.distance - u.plane.distance).abs() <= FREED
-                && t.plane.normal_w.distance_squared(u.plane.normal_w) <= PARALLEL * PARALLEL
-        };
+        let same_wall = |t: &Touch, u: &Touch| OnePlane::EXACT.holds_for(&t.plane, &u.plane);
         self.touches.iter().filter(|t| t.push > 0.0).all(|t| {
             touches_there(t.part, t.piece, &t.plane)
                 || self.touches.iter().any(|u| same_wall(t, u) && touches_there(u.part, u.piece, &u.plane))
