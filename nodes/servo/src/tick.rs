@@ -22,7 +22,10 @@ pub struct Tick {
     motion: Motion,
     gains: GainRamp,
     output: Output,
-    jump: crate::config::JumpConfig,
+    /// Metres in a tick that are a jump.
+    jump_distance: f64,
+    /// The turn in a tick that is one: see [`chord_squared`].
+    jump_chord_squared: f64,
     cutoff: f64,
     period: f64,
     reset_count: Option<u32>,
@@ -46,7 +49,8 @@ impl Tick {
             motion: Motion::new(config.mapping.velocity_cutoff),
             gains: GainRamp::default(),
             output: Output::new(config),
-            jump: config.jump,
+            jump_distance: config.jump.distance,
+            jump_chord_squared: chord_squared_of(config.jump.angle),
             cutoff: config.mapping.velocity_cutoff,
             period: config.realtime.period(),
             reset_count: None,
@@ -126,8 +130,8 @@ impl Tick {
 
     fn jumped(&mut self, hip: &Pose) -> bool {
         let last = self.last_hip.replace(*hip).unwrap_or(*hip);
-        (hip.translation - last.translation).length() > self.jump.distance
-            || last.rotation_to(hip).length() > self.jump.angle
+        (hip.translation - last.translation).length() > self.jump_distance
+            || chord_squared(&last, hip) > self.jump_chord_squared
     }
 
     /// Velocity of the part, which stands still while the clutch is held.
@@ -155,6 +159,17 @@ impl Tick {
             }
         }
     }
+}
+
+/// The square of the distance between the unit quaternions of two orientations, of either sign: it grows with the angle between them.
+fn chord_squared(from: &Pose, to: &Pose) -> f64 {
+    (from.rotation - to.rotation).length_squared().min((from.rotation + to.rotation).length_squared())
+}
+
+/// The same of two orientations this angle apart, radians.
+fn chord_squared_of(angle: f64) -> f64 {
+    let half = 2.0 * (0.25 * angle.min(std::f64::consts::TAU)).sin();
+    half * half
 }
 
 /// The renderer of a scene, with the friction that the scene states.

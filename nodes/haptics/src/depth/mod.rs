@@ -204,10 +204,12 @@ impl DepthLaw {
             if places.len() < ROOM {
                 // (5), (6) and the nearest point know the contact plane only: slide App along n to the level of x0.
                 places.push(p.point_w + normal * normal.dot(x0 - p.point_w));
-                let short = p.gap - t.left;
-                let weight = if law == LawKind::Blended { (1.0 - short / fade).clamp(0.0, 1.0) } else { 1.0 };
-                weights.push(weight);
-                sharpness.push(f64::from(p.sharpness));
+                if law != LawKind::Paper {
+                    let short = p.gap - t.left;
+                    let weight = if law == LawKind::Blended { (1.0 - short / fade).clamp(0.0, 1.0) } else { 1.0 };
+                    weights.push(weight);
+                    sharpness.push(f64::from(p.sharpness));
+                }
             }
         };
         for (j, u) in scp.touches.iter().enumerate().filter(|(j, u)| *j == i || is_equal(&t, u)) {

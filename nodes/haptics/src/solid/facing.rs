@@ -23,8 +23,11 @@ pub(crate) fn facing_point(pair: &Pair<'_>, c: &CFace, tolerance: f64) -> Option
             let (b0, b1) = (b.vertex(b0), b.vertex(b1));
             let (ua, ub) = (a1 - a0, b1 - b0);
             let (s, t) = closest_places([a0, a1], [b0, b1])?;
-            let (ts, tt) = (tolerance / ua.length(), tolerance / ub.length());
-            (s >= -ts && s <= 1.0 + ts && t >= -tt && t <= 1.0 + tt).then(|| b0 + ub * t.clamp(0.0, 1.0))
+            // Between the ends nothing has to be known of their distance.
+            let is_on = |s: f64, along: DVec3| {
+                (0.0..=1.0).contains(&s) || (s - s.clamp(0.0, 1.0)).abs() <= tolerance / along.length()
+            };
+            (is_on(s, ua) && is_on(t, ub)).then(|| b0 + ub * t.clamp(0.0, 1.0))
         }
     }
 }
