@@ -85,10 +85,10 @@ impl Shares {
         }
         let order = &order[..count];
         self.ring.clear();
-        let from_first = |k: &u16| points[*k as usize].distance(points[order[0] as usize]);
-        let same = SAME_PLACE * order.iter().map(from_first).fold(0.0, f64::max);
+        let from_first = |k: &u16| points[*k as usize].distance_squared(points[order[0] as usize]);
+        let same = SAME_PLACE * SAME_PLACE * order.iter().map(from_first).fold(0.0, f64::max);
         for (i, k) in order.iter().enumerate() {
-            if self.ring.iter().all(|m| points[*m as usize].distance(points[*k as usize]) > same) {
+            if self.ring.iter().all(|m| points[*m as usize].distance_squared(points[*k as usize]) > same) {
                 self.widen(points, normal, *k);
             }
             let lighter = order.get(i + 1).map_or(least, |m| self.weights[*m as usize]);
@@ -150,11 +150,11 @@ impl Shares {
             corner.push(if n > 2 { corner_of(here - before, after - here, normal) } else { 1.0 });
             extent = (0..i).map(|j| at(j).distance_squared(here)).fold(extent, f64::max);
         }
-        let reach = CROWDED * extent.sqrt();
+        let reach2 = CROWDED * CROWDED * extent;
         for i in 0..n {
             let beside = |j: usize| {
-                let way = at(i).distance(at(j));
-                if way < reach { corner[j] * (1.0 - way / reach) } else { 0.0 }
+                let way2 = at(i).distance_squared(at(j));
+                if way2 < reach2 { corner[j] * (1.0 - (way2 / reach2).sqrt()) } else { 0.0 }
             };
             let crowd: f64 = corner[i] + (0..n).filter(|j| *j != i).map(beside).sum::<f64>();
             capacity[ring[i] as usize] += layer * corner[i] / crowd.max(1.0);

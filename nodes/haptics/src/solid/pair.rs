@@ -289,10 +289,10 @@ impl<'a> Pair<'a> {
                 let edges_a = own_a.iter().chain(edges_of_a(a, &at));
                 for edge_a in edges_a.filter(|e| live_a[e.index()]) {
                     let along_a = placed.r * a.edge_direction(*edge_a);
-                    let on_a = placed.point(a.vertex(a.edge(*edge_a).vertices[0]));
+                    let on_a = || placed.point(a.vertex(a.edge(*edge_a).vertices[0]));
                     let edges_b = own_b.iter().chain(edges_of_b(b, &at));
                     for edge_b in edges_b.filter(|e| live_b[e.index()]) {
-                        if best.is_some_and(|o| !may_better(along_a, on_a, b, *edge_b, o.distance)) {
+                        if best.is_some_and(|o| !may_better(along_a, &on_a, b, *edge_b, o.distance)) {
                             continue;
                         }
                         let c = BasicContact::TypeC { edge_a: *edge_a, edge_b: *edge_b };
@@ -318,7 +318,7 @@ impl<'a> Pair<'a> {
 /// Whether the plane of two edges can take place, as far as B's edge tells, with a signed distance larger than `known`,
 /// metres, as far as the squares of both tell, which need no root.
 #[inline]
-fn may_better(along_a: DVec3, on_a: DVec3, b: &Polyhedron, edge_b: EdgeId, known: f64) -> bool {
+fn may_better(along_a: DVec3, on_a: &impl Fn() -> DVec3, b: &Polyhedron, edge_b: EdgeId, known: f64) -> bool {
     let Edge { vertices: [at_b, _], faces: [f, g] } = b.edge(edge_b);
     let (n, m) = (b.face_plane(f).normal, b.face_plane(g).normal);
     let (p, q) = (n.dot(along_a), m.dot(along_a));
@@ -327,7 +327,7 @@ fn may_better(along_a: DVec3, on_a: DVec3, b: &Polyhedron, edge_b: EdgeId, known
     }
     // Along the edge's arc on the Gauss sphere, where it crosses the circle of A's edge.
     let outward = n * q.abs() + m * p.abs();
-    let over = outward.dot(on_a - b.vertex(at_b));
+    let over = outward.dot(on_a() - b.vertex(at_b));
     over * over.abs() > known * known.abs() * outward.length_squared()
 }
 
