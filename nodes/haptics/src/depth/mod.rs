@@ -166,7 +166,8 @@ impl DepthLaw {
                     distance: p.gap + t.plane.distance - t.left,
                     kind,
                 });
-                result.dropped += u32::from(!kept);
+                // Those that only fade in do not take place.
+                result.dropped += u32::from(!kept && p.gap <= t.left + t.tie);
             }
         }
     }

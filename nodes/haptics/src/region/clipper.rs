@@ -29,7 +29,7 @@ type Other = Option<u32>;
 /// Normals that differ by less, radians, bound one motion.
 const ONE_DIRECTION: f64 = 1e-4;
 /// Most pairs of faces clipped for one contact.
-const MAX_PAIRS: usize = 48;
+const MAX_PAIRS: usize = 24;
 
 impl Clipper {
     /// Room for the largest faces of the world.
