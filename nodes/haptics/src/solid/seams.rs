@@ -10,6 +10,9 @@ mod tests;
 
 /// Points this close to a piece's surface (part of the largest piece) count as on it.
 const ON_SURFACE: f64 = 1e-7;
+/// What lies no farther over another piece than this (part of the largest piece) belongs to it, and a surface goes on in one that
+/// stands no lower: files of six or seven digits bend what was flat.
+const LEVEL: f64 = 2e-6;
 /// A normal may lean this far (radians) over a flat seam and still be the normal of the uncut surface.
 const FLAT: f64 = 1e-6;
 /// A surface that falls by more than this (radians) beyond a side ends there: meshes hold their facets flat to less.
@@ -47,6 +50,8 @@ pub(crate) struct Seams {
     /// For each piece and face the faces of other pieces that lie in its plane and look the same way.
     flush: Vec<Vec<Vec<(u32, FaceId)>>>,
     tolerance: f64,
+    /// See [`LEVEL`], metres.
+    level: f64,
 }
 
 /// A part of an edge that lies in another piece.
@@ -102,6 +107,7 @@ impl Seams {
             over_face: Vec::new(),
             flush,
             tolerance,
+            level: LEVEL * size,
         };
         seams.at_vertex = (0..n).map(|a| seams.owners_of_vertices(a)).collect();
         seams.at_edge = (0..n).map(|a| seams.stretches_of_edges(a)).collect();
@@ -124,7 +130,7 @@ impl Seams {
 
     fn owners_of_vertices(&self, piece: usize) -> Vec<Vec<u32>> {
         let owners = |v: &DVec3| {
-            let owns = |other: &u32| self.pieces[*other as usize].contains(*v, self.tolerance);
+            let owns = |other: &u32| self.pieces[*other as usize].contains(*v, self.level);
             self.neighbors[piece].iter().copied().filter(owns).collect()
         };
         self.pieces[piece].vertices().iter().map(owners).collect()
@@ -144,7 +150,7 @@ impl Seams {
         let length = a.distance(b);
         let mut stretch = Stretch { other, from: f64::NEG_INFINITY, to: f64::INFINITY };
         for f in q.faces() {
-            let [over_a, over_b] = [a, b].map(|p| q.face_plane(f).signed_distance(p) - self.tolerance);
+            let [over_a, over_b] = [a, b].map(|p| q.face_plane(f).signed_distance(p) - self.level);
             match (over_a > 0.0, over_b > 0.0) {
                 (true, true) => return None,
                 (true, false) => stretch.from = stretch.from.max(length * over_a / (over_a - over_b)),
@@ -290,7 +296,7 @@ impl Seams {
             q.faces().all(|f| {
                 let plane = q.face_plane(f);
                 let above = plane.signed_distance(point);
-                above < -here || above <= self.tolerance && plane.normal.dot(beyond) <= FLAT
+                above < -here || above <= self.level && plane.normal.dot(beyond) <= FLAT
             })
         })
     }
@@ -299,7 +305,7 @@ impl Seams {
     /// of the uncut solid: the contact plane must support every piece that the point belongs to.
     pub fn is_felt(&self, piece: usize, point: DVec3, normal: DVec3) -> bool {
         self.neighbors[piece].iter().all(|&other| {
-            !self.pieces[other as usize].contains(point, self.tolerance) || self.supports(other, point, normal)
+            !self.pieces[other as usize].contains(point, self.level) || self.supports(other, point, normal)
         })
     }
 
@@ -324,7 +330,7 @@ impl Seams {
     /// Whether the plane through `point` with the outward `normal` has no more of the piece beyond it than a flat seam lets out.
     fn supports(&self, piece: u32, point: DVec3, normal: DVec3) -> bool {
         let q = &self.pieces[piece as usize];
-        let highest = normal.dot(point) + FLAT * 2.0 * q.size() + self.tolerance;
+        let highest = normal.dot(point) + FLAT * 2.0 * q.size() + self.level;
         q.corner_ids().all(|v| normal.dot(q.vertex(v)) <= highest)
     }
 }
