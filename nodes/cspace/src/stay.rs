@@ -87,14 +87,14 @@ impl Placed<'_> {
         let w = self.between_edges(edge_a, edge_b);
         let distance = n.dot(w);
         let face = Parallelogram::new(n, w, (u, rod_a.length), (rod_b.dir, rod_b.length));
-        // The arcs' ends, each on the side of an end of the other edge.
-        let (n_a, v_a) = (self.turn_to_a(n), self.turn_to_a(rod_b.dir));
-        let normals_a = rod_a.faces.map(|f| self.a.planes[f as usize].0);
-        let (a_at_b1, b_at_a1) = (usize::from(normals_a[1].dot(v_a) < 0.0), usize::from(p[1] < 0.0));
         let under = (-distance).max(0.0);
         let stays = |s: f64, cosine: f64| !may_win(s, under, cosine - SLACK, 0.0);
-        let at_b = [1 - a_at_b1, a_at_b1].map(|k| -n_a.dot(normals_a[k]));
-        let at_a = [1 - b_at_a1, b_at_a1].map(|k| n.dot(normals_b[k]));
+        // The arcs' ends, each on the side of an end of the other edge: ties broken as everywhere, for where the edges lie in one
+        // plane with a face, its normal is an end of both arcs.
+        let n_a = self.turn_to_a(n);
+        let normal_a = |end: usize| self.a.planes[rod_a.faces[self.arc_at_b(edge_a, edge_b, end)] as usize].0;
+        let at_b = [0, 1].map(|end| -n_a.dot(normal_a(end)));
+        let at_a = [0, 1].map(|end| n.dot(normals_b[self.arc_at_a(edge_a, edge_b, end)]));
         let all = (0..2).all(|end| stays(face.beyond_b[end], at_b[end]) && stays(face.beyond_a[end], at_a[end]));
         let contact = crate::c_face::type_c(edge_a, edge_b);
         all.then_some((CFace { contact, normal_w: n, distance }, -face.outermost()))

@@ -58,6 +58,51 @@ fn a_box_slides_flat_on_a_plate() {
     println!("worst {worst}");
 }
 
+/// Where a part that lies flat slides off past a bevel, its edges lie in one plane with a face up to the last step.
+#[test]
+fn a_part_that_lies_flat_slides_off_over_a_bevelled_corner() {
+    let bevelled = |size: DVec3, top: f64| {
+        let (mut v, f) = cuboid(size);
+        v.iter_mut().filter(|v| v.z > 0.0).for_each(|v| *v *= DVec3::new(top, top, 1.0));
+        (v, f)
+    };
+    let mut rng = random(5);
+    let mut between = |range: std::ops::Range<f64>| rand::RngExt::random_range(&mut rng, range);
+    let (mut wrong, mut contacts) = (0, 0);
+    for k in 0..300 {
+        let part = match k % 3 {
+            0 => cuboid(DVec3::new(0.02, 0.016, 0.02)),
+            1 => prism(6, 0.012, 0.02),
+            _ => bevelled(DVec3::splat(0.02), 0.8),
+        };
+        let fixed = bevelled(DVec3::new(0.08, 0.08, 0.01), between(0.5..0.9));
+        let (a, b) = (polyhedron(&part), polyhedron(&fixed));
+        let corner = fixed.0.iter().copied().fold(DVec3::ZERO, |m, v| if v.z > 0.0 { m.max(v) } else { m });
+        // Upside down: rounding tilts the lower face by 1e-16.
+        let turn = DQuat::from_rotation_x(std::f64::consts::PI) * DQuat::from_rotation_z(between(0.0..6.3));
+        let (wave, depth) = (between(0.0..6.3), between(2e-5..2e-4));
+        let way = DVec3::new(between(-0.02..0.02), between(-0.02..0.02), 0.0);
+        let off = DVec3::new(between(0.0..0.012), between(0.0..0.012), 0.01);
+        let mut tracker = Tracker::new(a.clone(), b.clone());
+        for i in 0..300 {
+            let s = f64::from(i) / 300.0;
+            let sunk = depth * (1.0 + (20.0 * s + wave).sin());
+            let pose = Pose::new(corner + off + way * (s - 0.5) - DVec3::Z * sunk, turn);
+            let t = tracker.step(&pose);
+            let truth = exhaustive_distance(&a, &b, &pose);
+            contacts += u32::from(truth <= 0.0);
+            let right =
+                (truth > 0.0) == t.is_free() && (t.is_free() || t.divergent || (truth - t.distance).abs() < 1e-12);
+            if !right {
+                wrong += 1;
+                println!("{k} {i} truth {truth} tracked {t:?}");
+            }
+        }
+    }
+    assert!(contacts > 10_000, "{contacts} contacts");
+    assert_eq!(wrong, 0);
+}
+
 /// Every pair and motion of the large run, a few poses each.
 #[test]
 fn free_and_depth_agree_with_parry_over_all_pairs_and_motions() {

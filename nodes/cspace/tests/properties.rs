@@ -75,7 +75,7 @@ proptest! {
         prop_assert!(agree(there, back, 1e-11), "{there:?} {back:?}");
     }
 
-    /// MATH: at a converged optimum with `f < 0` the surface contact point is a true touching configuration.
+    /// At a converged optimum with `f < 0` the surface contact point is a true touching configuration.
     #[test]
     fn the_surface_contact_point_touches(i in 0u64..60, j in 0u64..60, p in pose()) {
         let (a, b) = (polyhedron(&shape(i)), polyhedron(&shape(j)));
