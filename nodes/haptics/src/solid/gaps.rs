@@ -3,12 +3,15 @@
 use cspace::{EdgeId, FaceId, FixedPart, Polyhedron, World};
 use glam::DMat3;
 use spatial::DVec3;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// Widths of gaps that are closed, as parts of the largest piece: files of six or seven digits leave such between pieces that
 /// were one. What is narrower counts as closed in any case.
 const NARROWEST: f64 = 1e-8;
 const WIDEST: f64 = 3e-5;
+/// Wider ones may be meant however large the pieces are, metres.
+const MEANT: f64 = 2e-6;
 /// Cosine between two faces up to which they face each other across a gap.
 const OPPOSITE: f64 = -0.999_999;
 /// Determinant of the normals at a vertex above which it is told well where they meet.
@@ -30,23 +33,25 @@ pub(crate) fn closed(world: Arc<World>) -> Arc<World> {
 /// The pieces of a rigid assembly, in one common frame, one of the two at each gap moved up to the other. None if there are no gaps.
 fn closed_pieces(pieces: &[Arc<Polyhedron>]) -> Option<Vec<Arc<Polyhedron>>> {
     let size = pieces.iter().map(|p| p.size()).fold(0.0, f64::max);
+    let widths = NARROWEST * size..=(WIDEST * size).min(MEANT);
     let mut ways: Vec<Vec<f64>> = pieces.iter().map(|p| vec![0.0; p.face_count()]).collect();
     for (a, p) in pieces.iter().enumerate() {
         for (b, q) in pieces.iter().enumerate().skip(a + 1) {
-            if p.center().distance(q.center()) > p.size() + q.size() + WIDEST * size {
+            if p.center().distance(q.center()) > p.size() + q.size() + widths.end() {
                 continue;
             }
             for f in p.faces() {
-                let Some(g) = face_across(p, f, q, size) else { continue };
-                let (piece, face, way) = if may_move(p, f) {
-                    (a, f, farthest(p, f, q, g))
-                } else if may_move(q, g) {
-                    (b, g, farthest(q, g, p, f))
-                } else {
+                let Some(g) = face_across(p, f, q, &widths) else { continue };
+                let mut either = [(a, p, f, q, g), (b, q, g, p, f)];
+                // What moves is no surface of the solid if the other face is all over it.
+                if !is_under(p, f, q, g, *widths.end()) && is_under(q, g, p, f, *widths.end()) {
+                    either.reverse();
+                }
+                let Some((piece, p, f, q, g)) = either.into_iter().find(|(_, p, f, ..)| may_move(p, *f)) else {
                     continue;
                 };
-                let known = &mut ways[piece][face.index()];
-                *known = known.max(way);
+                let known = &mut ways[piece][f.index()];
+                *known = known.max(farthest(p, f, q, g));
             }
         }
     }
@@ -59,26 +64,33 @@ fn closed_pieces(pieces: &[Arc<Polyhedron>]) -> Option<Vec<Arc<Polyhedron>>> {
 }
 
 /// The face of `q` that lies across a gap from `face` of `p`, if there is a gap.
-fn face_across(p: &Polyhedron, face: FaceId, q: &Polyhedron, size: f64) -> Option<FaceId> {
+fn face_across(p: &Polyhedron, face: FaceId, q: &Polyhedron, widths: &RangeInclusive<f64>) -> Option<FaceId> {
     let plane = p.face_plane(face);
     let nearest = q.support(-plane.normal);
     // Rounding turns faces, too: a gap may be closed at one end.
-    if plane.signed_distance(q.vertex(nearest)).abs() > WIDEST * size {
+    if plane.signed_distance(q.vertex(nearest)).abs() > *widths.end() {
         return None;
     }
     let lies_over = |g: &FaceId| {
         let is_beside = |p: &Polyhedron, f, q: &Polyhedron, g| {
             let outside = |side: &cspace::Plane| {
-                q.face_vertices(g).iter().all(|v| side.signed_distance(q.vertex(*v)) >= -WIDEST * size)
+                q.face_vertices(g).iter().all(|v| side.signed_distance(q.vertex(*v)) >= -widths.end())
             };
             p.face_sides(f).iter().any(outside)
         };
         q.face_plane(*g).normal.dot(plane.normal) < OPPOSITE
-            && (NARROWEST * size..=WIDEST * size).contains(&farthest(p, face, q, *g))
+            && widths.contains(&farthest(p, face, q, *g))
             && !is_beside(p, face, q, *g)
             && !is_beside(q, *g, p, face)
     };
     q.vertex_faces(nearest).iter().copied().find(lies_over)
+}
+
+/// Whether all of a face of `p` lies under the one of `q` across the gap, but for `slack` metres at its sides.
+fn is_under(p: &Polyhedron, face: FaceId, q: &Polyhedron, other: FaceId, slack: f64) -> bool {
+    let inside =
+        |side: &cspace::Plane| p.face_vertices(face).iter().all(|v| side.signed_distance(p.vertex(*v)) <= slack);
+    q.face_sides(other).iter().all(inside)
 }
 
 /// How far over a face of `p` the vertices of one of `q` lie at most, metres.
@@ -135,7 +147,7 @@ mod tests {
 
     #[test]
     fn pieces_move_up_to_each_other_and_nothing_else_changes() {
-        for gap in [1e-7, 1e-6, 2e-5] {
+        for gap in [1e-7, 1e-6, 1.9e-6] {
             let pieces = row_of(gap);
             let closed = closed_pieces(&pieces).expect("gaps");
             let span = |p: &Polyhedron| {
@@ -158,8 +170,22 @@ mod tests {
 
     #[test]
     fn pieces_that_touch_or_stand_apart_stay_as_they_are() {
-        for gap in [0.0, 1e-9, 1e-4, 0.1] {
+        for gap in [0.0, 1e-9, 3e-6, 0.1] {
             assert!(closed_pieces(&row_of(gap)).is_none(), "{gap}");
+        }
+    }
+
+    #[test]
+    fn the_face_moves_that_the_other_covers() {
+        let wall = Arc::new(cuboid(DVec3::new(-1.0, -1.0, -1.0), DVec3::new(0.0, 1.0, 1.0)));
+        let block = Arc::new(cuboid(DVec3::new(1e-6, -0.1, -0.1), DVec3::new(0.2, 0.1, 0.1)));
+        for pieces in [[wall.clone(), block.clone()], [block, wall]] {
+            let closed = closed_pieces(&pieces).expect("a gap");
+            for (new, old) in closed.iter().zip(&pieces) {
+                let is_wall = old.size() > 1.0;
+                assert_eq!(new.vertices() == old.vertices(), is_wall);
+                assert!(is_wall || new.vertices().iter().any(|v| v.x.abs() < 1e-15));
+            }
         }
     }
 }
