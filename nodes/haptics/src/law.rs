@@ -50,6 +50,7 @@ pub trait RenderLaw: Send {
         self.render_into(hip, gains, dt, &mut out);
         out
     }
+
     /// The same, into the output of a hand that touches nothing: what a tick gives is large to hand on.
     fn render_into(&mut self, hip: &Pose, gains: &Gains, dt: f64, out: &mut LawOutput);
     /// Forgets the past: the next pose is seeded globally.
