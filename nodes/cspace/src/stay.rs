@@ -10,6 +10,17 @@ use spatial::DVec3;
 /// What is asked of the cosine of an angle between normals beyond rounding and ties.
 const SLACK: f64 = 1e-9;
 
+/// The plane of two edges whose arcs cross.
+struct EdgePlane {
+    /// Unit, axes of W.
+    n: DVec3,
+    /// Signed distance of `x`, metres.
+    distance: f64,
+    face: Parallelogram,
+    /// Of the faces at B's edge.
+    normals_b: [DVec3; 2],
+}
+
 impl Placed<'_> {
     /// The plane of an applicable node, and how far x's projection lies inside of the C-face's sides, metres; none if
     /// a neighbour could have a larger signed distance, or where edges are too nearly parallel to be sure.
@@ -30,18 +41,7 @@ impl Placed<'_> {
                 (-self.turn_to_w(self.a.planes[face_a.index()].0), distance, inside)
             }
             BasicContact::TypeC { edge_a, edge_b } => {
-                let (rod_a, rod_b) = (&self.a.rods[edge_a.index()], &self.b.rods[edge_b.index()]);
-                let u = self.turn_to_w(rod_a.dir);
-                let normals = rod_b.faces.map(|f| self.b.planes[f as usize].0);
-                let p = normals.map(|n| n.dot(u));
-                let n = normal_between(normals, p)?;
-                if !(crosses || self.surely_cross(edge_a.0, edge_b.0, p, n)) {
-                    return None;
-                }
-                let n = n.normalize();
-                let w = self.between_edges(edge_a.0, edge_b.0);
-                let distance = n.dot(w);
-                let face = Parallelogram::new(n, w, (u, rod_a.length), (rod_b.dir, rod_b.length));
+                let EdgePlane { n, distance, face, .. } = self.edge_plane(edge_a.0, edge_b.0, crosses)?;
                 let outermost = face.outermost();
                 if !(outermost + (-distance).max(0.0) * tan_half <= 0.0) {
                     return None;
@@ -75,18 +75,8 @@ impl Placed<'_> {
 
     /// The same of two edges: none if a plane between theirs and the end of an arc could be nearer.
     fn edges_stay(&self, edge_a: u32, edge_b: u32, crosses: bool) -> Option<(CFace, f64)> {
-        let (rod_a, rod_b) = (&self.a.rods[edge_a as usize], &self.b.rods[edge_b as usize]);
-        let u = self.turn_to_w(rod_a.dir);
-        let normals_b = rod_b.faces.map(|f| self.b.planes[f as usize].0);
-        let p = normals_b.map(|n| n.dot(u));
-        let n = normal_between(normals_b, p)?;
-        if !(crosses || self.surely_cross(edge_a, edge_b, p, n)) {
-            return None;
-        }
-        let n = n.normalize();
-        let w = self.between_edges(edge_a, edge_b);
-        let distance = n.dot(w);
-        let face = Parallelogram::new(n, w, (u, rod_a.length), (rod_b.dir, rod_b.length));
+        let EdgePlane { n, distance, face, normals_b } = self.edge_plane(edge_a, edge_b, crosses)?;
+        let rod_a = &self.a.rods[edge_a as usize];
         let under = (-distance).max(0.0);
         let stays = |s: f64, cosine: f64| !may_win(s, under, cosine - SLACK, 0.0);
         // The arcs' ends, each on the side of an end of the other edge: ties broken as everywhere, for where the edges lie in one
@@ -98,6 +88,23 @@ impl Placed<'_> {
         let all = (0..2).all(|end| stays(face.beyond_b[end], at_b[end]) && stays(face.beyond_a[end], at_a[end]));
         let contact = crate::c_face::type_c(edge_a, edge_b);
         all.then_some((CFace { contact, normal_w: n, distance }, -face.outermost()))
+    }
+
+    /// The plane of two edges; none if they may not cross, or are too nearly parallel to be sure.
+    #[inline(always)]
+    fn edge_plane(&self, edge_a: u32, edge_b: u32, crosses: bool) -> Option<EdgePlane> {
+        let (rod_a, rod_b) = (&self.a.rods[edge_a as usize], &self.b.rods[edge_b as usize]);
+        let u = self.turn_to_w(rod_a.dir);
+        let normals_b = rod_b.faces.map(|f| self.b.planes[f as usize].0);
+        let p = normals_b.map(|n| n.dot(u));
+        let n = normal_between(normals_b, p)?;
+        if !(crosses || self.surely_cross(edge_a, edge_b, p, n)) {
+            return None;
+        }
+        let n = n.normalize();
+        let w = self.between_edges(edge_a, edge_b);
+        let face = Parallelogram::new(n, w, (u, rod_a.length), (rod_b.dir, rod_b.length));
+        Some(EdgePlane { n, distance: n.dot(w), face, normals_b })
     }
 }
 

@@ -44,8 +44,10 @@ pub fn straightened(mesh: Mesh) -> Mesh {
     let flat = match faces(&mesh) {
         Err(_) => convex_for_its_digits(&mesh)
             .or_else(|| convex_bodies_for_their_digits(&mesh))
-            .or_else(|| flattened(&mesh, MOST, 0.0)),
-        Ok(count) => flattened(&mesh, MOST_OF_CONVEX, 0.0).filter(|m| faces(m).is_ok_and(|flat| flat < count)),
+            .or_else(|| flattened(&mesh, tolerance(&mesh, MOST), 0.0)),
+        Ok(count) => {
+            flattened(&mesh, tolerance(&mesh, MOST_OF_CONVEX), 0.0).filter(|m| faces(m).is_ok_and(|flat| flat < count))
+        }
     };
     flat.unwrap_or(mesh)
 }
@@ -71,12 +73,12 @@ fn whole(mesh: &Mesh) -> Result<Polyhedron, PolyhedronError> {
 /// The mesh made convex as far as its digits leave that open: with plane faces, or as the hull of what that gives.
 fn convex_for_its_digits(mesh: &Mesh) -> Option<Mesh> {
     let open = tolerance(mesh, MOST);
-    let flat = flattened(mesh, MOST, 0.0);
+    let flat = flattened(mesh, open, 0.0);
     if let Some(flat) = flat.as_ref().filter(|flat| whole(flat).is_ok()) {
         return Some(flat.clone());
     }
     // Where facets are so small that many lie in one plane by chance, only large faces are made plane, or none.
-    let large = flattened(mesh, MOST, LARGE * open);
+    let large = flattened(mesh, open, LARGE * open);
     large
         .iter()
         .chain([mesh])
@@ -94,11 +96,10 @@ fn tolerance(mesh: &Mesh, most: f64) -> f64 {
     left_open(mesh).unwrap_or(0.0).clamp(LEAST * size, most * size)
 }
 
-/// The mesh with faces made plane as far as the digits of its coordinates leave that open, `most` of the size at most, its
-/// vertices and faces in the same order; `None` where that moves nothing. Faces smaller than a square with sides of `least`
+/// The mesh with faces made plane that bend by no more than `tolerance`, metres, its vertices and faces in the same order; `None`
+/// where that moves nothing. Faces smaller than a square with sides of `least`
 /// are left as they are.
-fn flattened(mesh: &Mesh, most: f64, least: f64) -> Option<Mesh> {
-    let tolerance = tolerance(mesh, most);
+fn flattened(mesh: &Mesh, tolerance: f64, least: f64) -> Option<Mesh> {
     let welded = mesh.welded();
     let faces = Faces::of(&welded, tolerance, least)?;
     let mut bent = 0.0f64;
@@ -206,13 +207,12 @@ impl Faces {
 
 /// The facets across each facet's sides; `None` if the surface is not closed.
 fn neighbours(mesh: &Mesh) -> Option<Vec<Vec<usize>>> {
-    let sides = |f: usize| {
-        let corners = &mesh.faces[f];
-        (0..corners.len()).map(move |i| (corners[i], corners[(i + 1) % corners.len()]))
+    let facet_at = mesh.face_at_sides();
+    let across = |corners: &Vec<u32>| {
+        let next = corners.iter().cycle().skip(1);
+        corners.iter().zip(next).map(|(a, b)| facet_at.get(&(*b, *a)).copied()).collect()
     };
-    let facet_at: HashMap<(u32, u32), usize> =
-        (0..mesh.faces.len()).flat_map(|f| sides(f).map(move |side| (side, f))).collect();
-    (0..mesh.faces.len()).map(|f| sides(f).map(|(a, b)| facet_at.get(&(b, a)).copied()).collect()).collect()
+    mesh.faces.iter().map(across).collect()
 }
 
 /// Twice the vector area of a facet.
@@ -293,16 +293,16 @@ mod tests {
             for (digits, step) in [(6, 1e-6), (7, 1e-7)] {
                 let file = written(&part, decimals(digits));
                 refused += usize::from(faces(&file).is_none());
-                let flat = flattened(&file, MOST, 0.0).unwrap();
+                let flat = flattened(&file, tolerance(&file, MOST), 0.0).unwrap();
                 assert_eq!(faces(&flat), Some(count), "{digits} decimals");
                 for (a, b) in flat.vertices.iter().zip(&part.vertices) {
                     assert!(a.distance(*b) < 4.0 * step, "{digits} decimals: {a} for {b}");
                 }
             }
             let single = written(&part, |x| f64::from(x as f32));
-            assert_eq!(faces(&flattened(&single, MOST, 0.0).unwrap()), Some(count));
+            assert_eq!(faces(&flattened(&single, tolerance(&single, MOST), 0.0).unwrap()), Some(count));
             let nine = written(&single, |x| format!("{x:.8e}").parse().unwrap());
-            assert_eq!(faces(&flattened(&nine, MOST, 0.0).unwrap()), Some(count));
+            assert_eq!(faces(&flattened(&nine, tolerance(&nine, MOST), 0.0).unwrap()), Some(count));
         }
         assert!(refused >= 4, "only {refused} were refused as written: the test shows nothing");
     }
@@ -351,7 +351,7 @@ mod tests {
     #[test]
     fn numbers_with_all_their_digits_or_somebodys_own_are_left_alone() {
         let part = triangles(&round(32), 0.06);
-        assert_eq!(flattened(&part, MOST, 0.0), None);
+        assert_eq!(flattened(&part, tolerance(&part, MOST), 0.0), None);
         let mut dented = part;
         dented.vertices[3] *= 1.0 - 1e-4;
         assert!(polyhedron(&dented).is_err());
@@ -364,7 +364,7 @@ mod tests {
             let ring = |z: f64| outline.iter().map(move |&(x, y)| DVec3::new(x, y, z));
             let mut mesh = triangles(&outline, 1.0);
             mesh.vertices = ring(0.0).chain(ring(1.0)).collect();
-            assert_eq!((flattened(&mesh, MOST, 0.0), mesh.vertices.len() as u32), (None, 2 * n));
+            assert_eq!((flattened(&mesh, tolerance(&mesh, MOST), 0.0), mesh.vertices.len() as u32), (None, 2 * n));
         }
     }
 
@@ -376,6 +376,6 @@ mod tests {
         part.vertices[35] += 2e-5 * up;
         let file = written(&part, decimals(6));
         assert_eq!(faces(&file), None);
-        assert_eq!(flattened(&file, MOST, 0.0).and_then(|m| faces(&m)).filter(|n| *n <= 34), None);
+        assert_eq!(flattened(&file, tolerance(&file, MOST), 0.0).and_then(|m| faces(&m)).filter(|n| *n <= 34), None);
     }
 }

@@ -146,6 +146,15 @@ impl Mesh {
         (high - low).length()
     }
 
+    /// The face that runs along each directed side; of several the last.
+    pub(crate) fn face_at_sides(&self) -> HashMap<(u32, u32), usize> {
+        let sides = |(f, face): (usize, &Vec<u32>)| {
+            let next = face.iter().copied().cycle().skip(1);
+            face.iter().copied().zip(next).map(|side| (side, f)).collect::<Vec<_>>()
+        };
+        self.faces.iter().enumerate().flat_map(sides).collect()
+    }
+
     /// The faces as fans of triangles.
     pub fn triangles(&self) -> impl Iterator<Item = [DVec3; 3]> + '_ {
         self.faces.iter().flat_map(move |face| {

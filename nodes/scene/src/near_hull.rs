@@ -17,8 +17,11 @@ const ROUNDS: usize = 16;
 /// triangles in the order of the facets that they lie in. `None` if there is such a place, or this is not one closed surface.
 pub fn near_hull(mesh: &Mesh, tolerance: f64) -> Option<Mesh> {
     let welded = mesh.welded();
-    let sides = sides(&welded)?;
-    if welded.components().len() != 1 {
+    let sides = welded.face_at_sides();
+    let is_closed = sides.keys().all(|&(a, b)| sides.contains_key(&(b, a)));
+    // Two bodies that touch share sides.
+    let is_simple = sides.len() == welded.faces.iter().map(Vec::len).sum::<usize>();
+    if !is_closed || !is_simple || welded.components().len() != 1 {
         return None;
     }
     let hull = hull_without_slivers(&welded.vertices, THIN * tolerance)?;
@@ -71,19 +74,6 @@ fn middle([a, b, c]: [DVec3; 3], height: f64) -> Option<DVec3> {
     let across = [(b.distance(c), a), (c.distance(a), b), (a.distance(b), c)];
     let (longest, corner) = across.into_iter().max_by(|(l, _), (m, _)| l.total_cmp(m))?;
     ((b - a).cross(c - a).length() <= height * longest).then_some(corner)
-}
-
-/// The facet that runs along each directed side; `None` if the surface is not closed, or two bodies' that touch.
-fn sides(mesh: &Mesh) -> Option<HashMap<(u32, u32), usize>> {
-    let mut sides = HashMap::with_capacity(3 * mesh.faces.len());
-    for (facet, corners) in mesh.faces.iter().enumerate() {
-        for (i, &from) in corners.iter().enumerate() {
-            if sides.insert((from, corners[(i + 1) % corners.len()]), facet).is_some() {
-                return None;
-            }
-        }
-    }
-    sides.keys().all(|&(a, b)| sides.contains_key(&(b, a))).then_some(sides)
 }
 
 /// Whether some corner of facet `other` lies above the plane of `facet`.
