@@ -16,6 +16,7 @@ mod certificate;
 mod contact;
 mod convex_cut;
 mod crossing;
+mod facet;
 mod fold;
 mod graph;
 mod ids;

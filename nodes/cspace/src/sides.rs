@@ -35,7 +35,7 @@ impl Best {
 
     /// Takes the neighbour with normal `m` across a side if it is better than this plane and than what was offered.
     #[inline]
-    fn offer(&mut self, s: f64, e: f64, n: DVec3, m: DVec3, eps: f64, node: BasicContact) {
+    pub(crate) fn offer(&mut self, s: f64, e: f64, n: DVec3, m: DVec3, eps: f64, node: BasicContact) {
         let tan_half = ((m - n).length_squared() / (m + n).length_squared().max(1e-300)).sqrt();
         let win = s + e * tan_half;
         if win > eps {

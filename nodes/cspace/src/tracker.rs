@@ -7,7 +7,7 @@ use spatial::{DVec3, Pose};
 use std::sync::Arc;
 
 /// Moves one walk may make in a step; a global seed may cross the whole C-obstacle.
-const STEP_MOVES: u32 = 512;
+pub(crate) const STEP_MOVES: u32 = 512;
 /// Poses put between two samples that lie far apart.
 const MAX_SUBSTEPS: u32 = 8;
 /// Nearer planes that one step follows up.
@@ -274,6 +274,18 @@ impl PairState {
         reseeded: &mut bool,
         planes: &mut u32,
     ) -> (Found, bool) {
+        // The walk compares C-faces; where ties divide a facet among several, none of them speaks for it.
+        let mut near = near;
+        for _ in 0..MAX_RIVALS {
+            match placed.beyond_ties(&near, planes) {
+                Some(found) => near = found,
+                None => break,
+            }
+        }
+        if near.face.distance > 0.0 {
+            self.rival = None;
+            return (near, false);
+        }
         // The rival is tracked like Near; it stops being one when it is no nearer.
         let mut best = near;
         if let Some(rival) = self.rival {

@@ -103,6 +103,45 @@ fn a_part_that_lies_flat_slides_off_over_a_bevelled_corner() {
     assert_eq!(wrong, 0);
 }
 
+/// A box that stands on a box, turned about the vertical: the C-obstacle has a top, a bottom and up to eight walls, all of them
+/// beside the top and the bottom. However ties divide these, Near is a local optimum among the facets.
+#[test]
+fn near_is_no_plateau_of_two_boxes() {
+    let mut rng = random(11);
+    let (mut resting, mut inside) = (0, 0);
+    for k in 0..400 {
+        let mut side = || f64::from(rand::RngExt::random_range(&mut rng, 1..7)) * 0.005;
+        let (half_a, half_b) = (DVec3::new(side(), side(), side()), DVec3::new(side(), side(), side()));
+        let mut between = |range: std::ops::Range<f64>| rand::RngExt::random_range(&mut rng, range);
+        let turn = if k % 2 == 0 { f64::from(k) * std::f64::consts::FRAC_PI_8 } else { between(0.0..6.3) };
+        let turn = DQuat::from_rotation_z(turn);
+        let boxes = [half_a, half_b].map(|half| polyhedron(&cuboid(half * 2.0)));
+        let extent = |half: DVec3, u: DVec3| half.dot(u.abs());
+        let [axes_a, axes_b] = [turn, DQuat::IDENTITY].map(|r| [r * DVec3::X, r * DVec3::Y, DVec3::Z]);
+        let axes = [axes_b[2], axes_a[0], axes_a[1], axes_b[0], axes_b[1]];
+        let reach = axes.map(|u| extent(half_b, u) + extent(half_a, turn.inverse() * u));
+        let [a, b] = boxes;
+        let mut tracker = Tracker::new(a, b);
+        let (phase, deep) = (between(0.0..6.3), between(0.02..0.8));
+        for i in 0..150 {
+            let s = f64::from(i) * 0.05;
+            let x = DVec3::new((s + phase).sin(), (0.7 * s).cos(), 1.1 - deep * (0.9 * s).sin().abs())
+                * DVec3::new(reach[3], reach[4], reach[0]);
+            let t = tracker.step(&Pose::new(x, turn));
+            if t.is_free() {
+                continue;
+            }
+            inside += 1;
+            let wall = |k: usize| x.dot(axes[k]).abs() - reach[k];
+            let is_level = t.near.normal_w.z.abs() > 0.5;
+            let best = if is_level { (1..5).map(wall).fold(f64::NEG_INFINITY, f64::max) } else { wall(0) };
+            resting += u32::from(t.distance < best - 1e-12);
+        }
+    }
+    assert!(inside > 5_000, "{inside} contacts");
+    assert_eq!(resting, 0);
+}
+
 /// Every pair and motion of the large run, a few poses each.
 #[test]
 fn free_and_depth_agree_with_parry_over_all_pairs_and_motions() {
