@@ -74,8 +74,8 @@ impl Commanded {
 }
 
 /// The device as a node.
-pub struct DeviceNode {
-    host: Host,
+pub struct DeviceNode<'h> {
+    host: &'h mut Host,
     parameters: ParameterServer,
     device: Box<dyn HapticDevice>,
     watch: DeviceWatch,
@@ -96,12 +96,12 @@ pub struct DeviceNode {
     report_due: Due,
 }
 
-impl DeviceNode {
+impl<'h> DeviceNode<'h> {
     /// Opens the device and offers the topics.
     ///
     /// # Errors
     /// A parameter is refused, or the device is not there.
-    pub fn start(mut host: Host) -> Outcome<Self> {
+    pub fn start(host: &'h mut Host) -> Outcome<Self> {
         let parameters = ParameterServer::new(&mut host.node, declared())?;
         let mut config = Config::default();
         apply(&mut config, parameters.values()).map_err(Failure::new)?;
@@ -217,7 +217,7 @@ impl DeviceNode {
             self.last.buttons = sample.buttons;
         }
         if self.report_due.at(now) {
-            self.watch.tell(&self.host);
+            self.watch.tell(self.host);
             self.diagnostics.publish(&self.report(now, sample))?;
         }
         Ok(())

@@ -1,9 +1,9 @@
 //! The follower as a node: an example of a teleoperated robot at the end of a network.
 
 use crate::follower::{Follower, Line, MotionLimits, Wall};
-use crate::parameters::{Declared, ParameterServer, yaml_template};
+use crate::parameters::{Declared, ParameterServer};
 use crate::servo_node::Due;
-use crate::{Failure, Host, Listener, Outcome, Talker, qos};
+use crate::{Host, Listener, Outcome, Talker, qos};
 use bag::msg::{Header, PoseStamped, WrenchStamped};
 use r2r::ParameterValue as V;
 use spatial::{DVec3, Pose, Stamp, Wrench};
@@ -42,8 +42,8 @@ pub fn declared() -> Vec<Declared> {
 }
 
 /// Follows `target` (remap it to the servo's `~/proxy_pose`), publishes `~/pose` and the measured `~/wrench`.
-pub struct FollowerNode {
-    host: Host,
+pub struct FollowerNode<'h> {
+    host: &'h mut Host,
     parameters: ParameterServer,
     target: Listener<PoseStamped>,
     pose: Talker<PoseStamped>,
@@ -57,12 +57,12 @@ pub struct FollowerNode {
     frame_id: String,
 }
 
-impl FollowerNode {
+impl<'h> FollowerNode<'h> {
     /// Declares parameters and topics.
     ///
     /// # Errors
     /// A parameter or topic is refused.
-    pub fn start(mut host: Host) -> Outcome<Self> {
+    pub fn start(host: &'h mut Host) -> Outcome<Self> {
         let parameters = ParameterServer::new(&mut host.node, declared())?;
         let seed = parameters.number("seed") as u64;
         Ok(Self {
@@ -177,16 +177,4 @@ impl FollowerNode {
             ));
         }
     }
-}
-
-const WHAT: &str = "follows haptic_servo/proxy_pose with limited speed and acceleration, and sends the measured wrench back\n\
-    on ~/wrench (remap it to haptic_servo/remote_wrench).";
-
-/// Starts and runs it.
-///
-/// # Errors
-/// See [`FollowerNode`].
-pub fn run() -> Result<(), Failure> {
-    let parameters = || yaml_template("haptic_follower", &declared());
-    FollowerNode::start(Host::start("haptic_follower", WHAT, parameters)?)?.run()
 }

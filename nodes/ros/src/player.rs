@@ -34,8 +34,8 @@ pub fn declared() -> Vec<Declared> {
 }
 
 /// A bag that plays.
-pub struct Player {
-    host: Host,
+pub struct Player<'h> {
+    host: &'h mut Host,
     parameters: ParameterServer,
     pause: Inbox<ServiceRequest<SetBool::Service>>,
     paused: bool,
@@ -59,12 +59,12 @@ enum End {
     Seek(f64),
 }
 
-impl Player {
+impl<'h> Player<'h> {
     /// Declares the parameters.
     ///
     /// # Errors
     /// A parameter is refused.
-    pub fn start(mut host: Host) -> Outcome<Self> {
+    pub fn start(host: &'h mut Host) -> Outcome<Self> {
         let parameters = ParameterServer::new(&mut host.node, declared())?;
         let pause =
             Inbox::new(host.node.create_service::<SetBool::Service>("~/pause", QosProfile::services_default())?);

@@ -8,10 +8,8 @@ use std::process::ExitCode;
 const WHAT: &str = "publishes a haptic device's pose, twist and buttons and shows the wrench of ~/command/wrench.";
 
 fn main() -> ExitCode {
-    failure::run(|| {
-        DeviceNode::start(Host::start_in_real_time("haptic_device", WHAT, || {
-            yaml_template("haptic_device", &declared())
-        })?)?
-        .run()
-    })
+    failure::run(
+        || Host::start_in_real_time("haptic_device", WHAT, || yaml_template("haptic_device", &declared())),
+        |host| DeviceNode::start(host)?.run(),
+    )
 }

@@ -9,22 +9,23 @@ use std::time::Duration;
 const WHAT: &str = "draws a haptic servo's physical space and C-space with rerun.";
 
 fn main() -> ExitCode {
-    failure::run(body)
+    failure::run(
+        || Host::start("haptic_inspect", WHAT, || yaml_template("haptic_inspect", &PictureOptions::declared())),
+        body,
+    )
 }
 
-fn body() -> Outcome<()> {
-    let mut host =
-        Host::start("haptic_inspect", WHAT, || yaml_template("haptic_inspect", &PictureOptions::declared()))?;
+fn body(host: &mut Host) -> Outcome<()> {
     let mut parameters = ParameterServer::new(&mut host.node, PictureOptions::declared())?;
     let namespace = host.node.namespace()?;
     let options = PictureOptions::from_parameters(&parameters, &namespace)?;
-    let mut pictures = Pictures::new(&mut host, options)?;
+    let mut pictures = Pictures::new(host, options)?;
     host.say_ready();
     while !host.stopped() {
-        pictures.turn(&mut host, Duration::from_millis(20))?;
+        pictures.turn(host, Duration::from_millis(20))?;
         parameters.serve(host.now(), &mut |_| Ok(()))?;
     }
-    take_what_is_left(|| pictures.turn(&mut host, Duration::from_millis(10)))?;
+    take_what_is_left(|| pictures.turn(host, Duration::from_millis(10)))?;
     let said = pictures.finish()?;
     host.say(&said);
     Ok(())

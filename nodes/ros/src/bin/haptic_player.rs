@@ -8,7 +8,8 @@ use std::process::ExitCode;
 const WHAT: &str = "plays what a bag holds, at its times; service: ~/pause.";
 
 fn main() -> ExitCode {
-    failure::run(|| {
-        Player::start(Host::start("haptic_player", WHAT, || yaml_template("haptic_player", &declared()))?)?.run()
-    })
+    failure::run(
+        || Host::start("haptic_player", WHAT, || yaml_template("haptic_player", &declared())),
+        |host| Player::start(host)?.run(),
+    )
 }

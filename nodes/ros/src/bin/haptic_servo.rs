@@ -7,7 +7,8 @@ use std::process::ExitCode;
 const WHAT: &str = "tracks contacts in C-space and renders the force of compliant motion on the hand.";
 
 fn main() -> ExitCode {
-    failure::run(|| {
-        ServoNode::start(Host::start_in_real_time("haptic_servo", WHAT, servo::config::yaml_template)?)?.run()
-    })
+    failure::run(
+        || Host::start_in_real_time("haptic_servo", WHAT, servo::config::yaml_template),
+        |host| ServoNode::start(host)?.run(),
+    )
 }

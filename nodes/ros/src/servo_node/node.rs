@@ -25,8 +25,8 @@ const CSPACE_PERIOD: f64 = 1.0 / 60.0;
 const TURN: Duration = Duration::from_millis(2);
 
 /// The servo as a node.
-pub struct ServoNode {
-    host: Host,
+pub struct ServoNode<'h> {
+    host: &'h mut Host,
     parameters: ParameterServer,
     config: Config,
     commands: Commands,
@@ -56,12 +56,12 @@ pub struct ServoNode {
     ongoing_due: Due,
 }
 
-impl ServoNode {
+impl<'h> ServoNode<'h> {
     /// Reads the parameters, builds the scene, opens the device and starts the loop.
     ///
     /// # Errors
     /// Whatever cannot be had: a parameter, the scene, the device, a thread.
-    pub fn start(mut host: Host) -> Outcome<Self> {
+    pub fn start(host: &'h mut Host) -> Outcome<Self> {
         let mut parameters = ParameterServer::new(&mut host.node, declared())?;
         let mut config = Config::default();
         apply(&mut config, parameters.values()).map_err(Failure::new)?;
@@ -235,7 +235,7 @@ impl ServoNode {
     }
 
     fn report(&mut self, now: Stamp, grants: &str) -> Outcome<()> {
-        self.watch.tell(&self.host);
+        self.watch.tell(self.host);
         let report = ServoReport {
             status: self.servo.status.read(),
             last: &self.last,
