@@ -8,7 +8,7 @@ mod shares;
 
 pub(crate) use scp::SCP_MARGIN;
 
-use crate::region::{Clipper, RegionPoint, Scope, TIED, push_within, tied_contacts};
+use crate::region::{Clipper, Gone, Known, RegionPoint, Scope, TIED, Way, push_within, tied_contacts};
 use crate::solid::{OnePlane, Pair, Placed, Sensed, Solids};
 use crate::{ContactPoint, FormationKind, Gains, LawKind, LawOutput};
 use cspace::{BasicContact, contact_point_turned};
@@ -30,6 +30,10 @@ pub(crate) struct DepthLaw {
     order: Vec<u16>,
     hull: Vec<DVec3>,
     clipper: Clipper,
+    /// Of each pair.
+    known: Vec<Known>,
+    pieces: usize,
+    way: Way,
     multiple: bool,
 }
 
@@ -50,12 +54,16 @@ impl DepthLaw {
             order: vec![0; ROOM],
             hull: Vec::with_capacity(ROOM),
             clipper: Clipper::for_world(&solids.world),
+            known: vec![Known::NOTHING; solids.world.moving.len() * solids.world.fixed.len()],
+            pieces: solids.world.fixed.len(),
+            way: Way::new(solids.lever()),
             multiple: false,
         }
     }
 
     pub fn reset(&mut self) {
         self.multiple = false;
+        self.known.fill(Known::NOTHING);
         self.scp.reset();
     }
 
@@ -87,7 +95,8 @@ impl DepthLaw {
         for t in &mut self.scp.touches {
             t.left = t.plane.distance + t.plane.normal_w.dot(aside);
         }
-        self.contacts(solids, pairs, &there, law, gains, result);
+        let gone = self.way.go(there.x, hip.rotation);
+        self.contacts(solids, pairs, (&there, gone), law, gains, result);
         for i in 0..self.scp.touches.len() {
             let t = self.scp.touches[i];
             if t.push > 0.0 {
@@ -106,7 +115,7 @@ impl DepthLaw {
         &mut self,
         solids: &Solids,
         pairs: &[Sensed],
-        placed: &Placed,
+        (placed, gone): (&Placed, Gone),
         law: LawKind,
         gains: &Gains,
         result: &mut LawOutput,
@@ -124,7 +133,9 @@ impl DepthLaw {
             t.first = self.points.len();
             // Along Near's normal no contact can be deeper than Near.
             let scope = Scope { reach: limit, near_felt: true, wide: law == LawKind::Blended, along_near: true };
-            let is_clipped = !tied_contacts(&pair, &plane, within, &scope, &mut self.points);
+            let known = &mut self.known[pair.part * self.pieces + pair.piece];
+            let is_clipped =
+                !tied_contacts(&pair, &plane, within, &scope, (known, gone, self.way.lever), &mut self.points);
             if is_clipped {
                 self.clipper.region(&pair, &plane, &scope, &mut self.points);
             }

@@ -60,6 +60,11 @@ impl<'a> FacePair<'a> {
         self.pair.a.face_vertices(self.face_a)
     }
 
+    /// Of those between faces and sight the least cosine.
+    pub fn least_cosine(&self) -> f64 {
+        self.lean.min(self.slope).min(self.sight.dot(self.normal_a))
+    }
+
     /// The edges of A's face: see [`FacePair::ring_a`].
     pub fn edges_a(&self) -> &'a [EdgeId] {
         self.pair.a.face_edges(self.face_a)

@@ -8,13 +8,20 @@ pub(crate) const FACING: f64 = -0.5;
 
 /// The pair of faces, one of each body, at the features of `near` that are most nearly antiparallel.
 pub(crate) fn most_parallel(pair: &Pair<'_>, near: &CFace) -> Option<(FaceId, FaceId)> {
-    let mut best = (f64::INFINITY, None);
+    Some(most_parallel_by(pair, near)?.0)
+}
+
+/// The same, and by how much the cosine is less than that of any other pair there.
+pub(crate) fn most_parallel_by(pair: &Pair<'_>, near: &CFace) -> Option<((FaceId, FaceId), f64)> {
+    let (mut best, mut least, mut next) = (None, f64::INFINITY, f64::INFINITY);
     for_each_pair(pair, near, |cosine, faces| {
-        if cosine < best.0 {
-            best = (cosine, Some(faces));
+        if cosine < least {
+            (best, least, next) = (Some(faces), cosine, least);
+        } else {
+            next = next.min(cosine);
         }
     });
-    best.1
+    Some((best?, next - least))
 }
 
 /// The pairs of faces at the features of `near` that face each other: the most nearly antiparallel, and as many others as
