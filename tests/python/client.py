@@ -2,6 +2,7 @@
 
 import os
 import threading
+import time
 
 import rclpy
 from cspace_haptics_msgs.msg import TickBatch
@@ -46,6 +47,8 @@ class Client:
         self.stopping.set()
         self.thread.join(timeout=PATIENCE)
         self.executor.shutdown()
+        # Fast DDS can spin for ever over a participant that goes while it hears of another that goes: first come, first gone.
+        time.sleep(0.2)
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)
 
