@@ -7,6 +7,7 @@ mod declared;
 mod patterns;
 mod server;
 mod template;
+mod wire;
 
 pub use declared::Declared;
 pub use server::{Change, ParameterServer};
