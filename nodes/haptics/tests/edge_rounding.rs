@@ -77,3 +77,25 @@ fn a_pose_that_is_none_changes_nothing() {
         assert!((after.force - before.force).length() < 1e-12, "{law:?}: {} {}", after.force, before.force);
     }
 }
+
+#[test]
+fn a_corner_on_its_way_over_a_rim_is_not_held_back() {
+    // Of the edges at the corner one rises steeply outward: where that crosses the rim the corner stands lower and comes first.
+    let w = world(block(mm(10.0, 10.0, 10.0)), vec![cuboid(mm(-50.0, -50.0, -20.0), mm(0.0, 50.0, 0.0))]);
+    let gains = Gains { proxy_speed: f64::INFINITY, ..Gains::default() };
+    for turn in [0.35, 0.5, 0.65, 0.8, 0.95] {
+        let turned = |x: f64, z: f64| pose(x, 0.0, z, turn, 0.6, 0.2 * turn);
+        let rotation = turned(0.0, 0.0).rotation;
+        let corners = (0..8).map(|k| {
+            rotation * mm(10.0 * f64::from(k & 1) - 5.0, 5.0 * f64::from(k & 2) - 5.0, 2.5 * f64::from(k & 4) - 5.0)
+        });
+        let lowest = corners.min_by(|p, q| p.z.total_cmp(&q.z)).expect("a block has corners") * 1e3;
+        let mut r = Renderer::new(w.clone());
+        let down = (0..400).map(|i| turned(-1.0 - lowest.x, 2.0 - 0.006 * f64::from(i) - lowest.z));
+        let out = (0..400).map(|i| turned(-1.0 + 0.01 * f64::from(i) - lowest.x, -0.4 - lowest.z));
+        let forces: Vec<DVec3> = down.chain(out).map(|p| r.render(&p, &gains, 1e-3).wrench.force).collect();
+        assert!(forces.iter().any(|f| f.z > 0.39), "{turn} rad: in contact");
+        let back = forces.iter().map(|f| -f.x).fold(0.0, f64::max);
+        assert!(back < 1e-9, "{turn} rad: held back with {back} N");
+    }
+}

@@ -21,6 +21,8 @@ pub(crate) enum Corner {
 const STEEP: f64 = 0.1;
 /// Vertices past a joint by a face that they lie farther below than this are none of its contacts, metres.
 const BELOW: f64 = 1e-6;
+/// How far (sine) the normal of two edges may lean away from the outside of a face: a tick may turn it back.
+const AWAY: f64 = 0.02;
 
 /// Two faces and the direction in which they are laid on each other.
 #[derive(Clone, Copy, Debug)]
@@ -230,11 +232,27 @@ impl<'a> FacePair<'a> {
             Corner::Crossing(i, j) => {
                 let (edge_a, edge_b) = (self.pair.a.face_edges(self.face_a)[i], self.pair.b.face_edges(self.face_b)[j]);
                 let (normal_w, gap) = crossing(&self.pair, edge_a, edge_b, self.plane_b.normal, height);
+                if self.bounds_motion() && self.leans_away(normal_w, i, j) {
+                    return None;
+                }
                 (BasicContact::TypeC { edge_a, edge_b }, foot, normal_w, gap)
             }
         };
         let gap = if self.scope.along_near { height / self.slope } else { gap };
         (gap <= self.scope.reach).then_some(RegionPoint { contact, sharpness: 1.0, point_w, normal_w, gap })
+    }
+
+    /// Whether the contacts are wanted as what bounds the motion, each along its own normal.
+    fn bounds_motion(&self) -> bool {
+        !self.scope.wide && !self.scope.along_near
+    }
+
+    /// Whether the normal of two edges, of A's face and of B's, leans away from the outside of either face: then an edge rises
+    /// there, what lies beside it comes first, and a corner on its way over the rim would be held back.
+    fn leans_away(&self, normal_w: DVec3, i: usize, j: usize) -> bool {
+        let Pair { a, b, placed, .. } = self.pair;
+        normal_w.dot(b.face_sides(self.face_b)[j].normal) < -AWAY
+            || normal_w.dot(placed.r * a.face_sides(self.face_a)[i].normal) > AWAY
     }
 
     /// Whether a contact of these faces, at these places on A and on B, is one that only a cut in either body makes.
