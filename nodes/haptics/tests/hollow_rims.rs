@@ -207,3 +207,19 @@ fn friction_of_a_peg_that_leans_in_a_hole_only_takes() {
         assert!(worst < 5e-8, "{sides} sides: {worst} J from nowhere, of {most} J");
     }
 }
+
+#[test]
+fn friction_follows_a_round_part_from_edge_to_edge_and_only_takes() {
+    let gains = Gains { friction_static: 0.4, friction_kinetic: 0.4, proxy_speed: f64::INFINITY, ..Gains::default() };
+    for seed in [20, 22, 59] {
+        let mut rng = random::rng(seed);
+        let mut u = |most: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(-most..most)));
+        let points: Vec<DVec3> = (0..120).map(|_| u(1.0).normalize() * 0.1).collect();
+        let w = world(random::hull(&points), vec![lying_cylinder()]);
+        let (turn, roll) = (DQuat::from_scaled_axis(u(2.0)), u(0.2));
+        let path = |s: f64| Pose::new(mm(-4.0 + 8.0 * s, 8.0 * s, 97.0), DQuat::from_scaled_axis(roll * s) * turn);
+        let (worst, most) = created_with(&gains, &w, &path, 1500);
+        assert!(most > 1e-3, "{seed}: in contact ({most} J)");
+        assert!(worst < 2e-8, "{seed}: {worst} J from nowhere, of {most} J");
+    }
+}

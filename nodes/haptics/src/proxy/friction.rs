@@ -41,24 +41,31 @@ struct Place {
 pub(crate) struct Friction {
     /// For each fixed piece; none falls back to the gains.
     own: Vec<Option<Coefficients>>,
+    /// Whether a place slides in this tick, and whether one did in the last.
     sliding: bool,
+    slid: bool,
 }
 
 impl Friction {
     pub fn new(own: Vec<Option<Coefficients>>) -> Self {
-        Self { own, sliding: false }
+        Self { own, sliding: false, slid: false }
     }
 
     pub fn reset(&mut self) {
-        self.sliding = false;
+        (self.sliding, self.slid) = (false, false);
+    }
+
+    /// A tick begins.
+    pub fn begin(&mut self) {
+        self.slid = std::mem::take(&mut self.sliding);
     }
 
     pub fn is_on(&self, gains: &Gains) -> bool {
         gains.friction_static > 0.0 || self.own.iter().flatten().any(|c| c.statically > 0.0)
     }
 
-    /// The friction wrench on the body (N and N.m about the proxy's origin) from the frictionless solution in
-    /// `projection`, whose rows stand for `view.points`.
+    /// The friction wrench on the body (N and N.m about the proxy's origin) in a round of the tick, from the frictionless solution
+    /// in `projection`, whose rows stand for `view.points`. Where a round leads to other contacts, what held before holds no more.
     ///
     /// Holds the centres of pressure in turn, each against what the others' friction leaves; what holding one takes, cut
     /// down to its cone where it exceeds it, is its friction. (Held all at once, two walls may pull against each other as a
@@ -77,10 +84,10 @@ impl Friction {
         let places = self.places(view, projection, gains);
         let mut forces = [DVec3::ZERO; HELD];
         let mut drag = Wrench::ZERO;
-        let slid = self.sliding;
         let held = || places.iter().flatten().enumerate().filter(|(_, p)| p.coefficients.statically > 0.0);
+        let mut sliding = false;
         for _ in 0..TURNS {
-            self.sliding = false;
+            sliding = false;
             let mut change = 0.0_f64;
             for (k, place) in held() {
                 let arm = place.point - pose.translation;
@@ -90,10 +97,10 @@ impl Friction {
                 let mut force = Self::hold(place, arm, rows, projection.clone(), metric, &goal);
                 let c = place.coefficients;
                 let kinetic = c.kinetically.clamp(0.0, c.statically) * place.force;
-                let limit = if slid { kinetic } else { c.statically * place.force };
+                let limit = if self.slid { kinetic } else { c.statically * place.force };
                 let size = force.length();
                 if size > limit {
-                    self.sliding = true;
+                    sliding = true;
                     force *= kinetic / size;
                 }
                 change = change.max(force.distance(forces[k]));
@@ -104,6 +111,7 @@ impl Friction {
                 break;
             }
         }
+        self.sliding |= sliding;
         drag
     }
 

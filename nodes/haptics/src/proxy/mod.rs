@@ -107,11 +107,13 @@ impl Proxy {
             self.seed(solids, hip, gains);
         }
         let metric = Metric::new(gains);
+        let rubs = self.friction.is_on(gains);
+        self.friction.begin();
         self.steadying.begin();
         let (sight, mut budget) = match moved {
             // Edge rounding: the proxy may catch up with the hand at no more than the stated speed.
             Some(way) if !jumped => {
-                let sight = if self.friction.is_on(gains) { f64::INFINITY } else { NEARBY.max(AHEAD * way) };
+                let sight = if rubs { f64::INFINITY } else { NEARBY.max(AHEAD * way) };
                 (sight, way + gains.proxy_speed.max(0.0) * dt.max(0.0))
             }
             _ => (f64::INFINITY, f64::INFINITY),
@@ -138,8 +140,11 @@ impl Proxy {
                 self.look_farther(solids);
             };
             self.keep_best(&mut safe, metric.energy(&to_hand), drag != Wrench::ZERO);
-            if round == 0 && self.friction.is_on(gains) {
-                let (metric, goal) = metric.steadied(&self.steadying, &goal);
+            if rubs {
+                if drag != Wrench::ZERO {
+                    step = self.solve(&metric, &to_hand);
+                }
+                let (metric, goal) = metric.steadied(&self.steadying, &to_hand);
                 let Self { friction, view, projection, rows, pose, .. } = self;
                 drag = friction.drag(view, projection, rows, &metric, &goal, pose, gains);
                 let free = step;
