@@ -252,6 +252,43 @@ fn two_edges_that_cross_beside_a_joint_are_felt_on_both_pieces() {
     assert!(felt > 50, "{felt}");
 }
 
+/// Odd parts cut in two anywhere, close to a tip as well: where an edge of the part crosses the cut is no corner of it, and the cut is
+/// none of its faces, though what lies behind narrows there.
+#[test]
+fn corners_that_only_a_cut_makes_weigh_nothing() {
+    let mut rng = rng(17);
+    let floor = || cuboid(DVec3::new(-0.1, -0.1, -0.05), DVec3::new(0.1, 0.1, 0.0));
+    let gains = Gains { law: LawKind::Blended, ..Gains::default() };
+    let mut turned = 0;
+    for k in 0..60 {
+        let mut any = || DVec3::from_array([0; 3].map(|_| rng.random_range(-1.0..1.0)));
+        let part = hull(&(0..7).map(|_| any().normalize() * 0.012).collect::<Vec<_>>());
+        let across = any().normalize();
+        let heights = || part.vertices().iter().map(|v| across.dot(*v));
+        let (low, high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
+        let at = low + (high - low) * if k % 2 == 0 { 0.01 } else { rng.random_range(0.1..0.9) };
+        let pieces = vec![behind(&part, across, at), behind(&part, -across, -at)];
+        let [whole, cut] = [vec![part.clone()], pieces].map(|moving| world(moving, vec![floor()]));
+        let mut renderers = [whole, cut].map(Renderer::new);
+        for _ in 0..20 {
+            // The cut is low: its part of the part is what touches.
+            let mut any = || DVec3::from_array([0; 3].map(|_| rng.random_range(-1.0..1.0)));
+            let down = DQuat::from_rotation_arc(across, (DVec3::Z + any() * 0.7).normalize());
+            let rotation = (DQuat::from_rotation_z(any().x * 3.0) * down).normalize();
+            let lowest = part.vertices().iter().map(|v| (rotation * *v).z).fold(f64::INFINITY, f64::min);
+            let hand = Pose::new(DVec3::Z * (-lowest - rng.random_range(1e-4..8e-4)), rotation);
+            let [expected, found] = renderers.each_mut().map(|r| {
+                r.reset();
+                r.render(&hand, &gains, 1e-3).wrench
+            });
+            turned += u32::from(expected.torque.length() > 1e-4);
+            let apart = (found.torque - expected.torque).length();
+            assert!(apart < 1e-9, "{k}: {found:?}, not {expected:?}");
+        }
+    }
+    assert!(turned > 500, "{turned}");
+}
+
 /// Files of few digits leave gaps between the pieces of a floor: a tip does not fall into them.
 #[test]
 fn a_tip_led_over_gaps_that_rounding_left_feels_a_whole_floor() {

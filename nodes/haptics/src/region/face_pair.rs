@@ -274,7 +274,10 @@ impl<'a> FacePair<'a> {
     fn is_cut_in_a(&self, corner: Corner, point: DVec3) -> bool {
         let is_cut = |side| self.pair.solids.goes_on_a(self.pair.part, self.face_a, side, point, self.pair.placed);
         match corner {
-            Corner::OfA(i) => is_cut(i) || is_cut(before(i, self.ring_a().len())),
+            Corner::OfA(i) => {
+                let Pair { solids, part, .. } = self.pair;
+                solids.moving.runs_on(part, self.face_a, i) || is_cut(i) || is_cut(before(i, self.ring_a().len()))
+            }
             Corner::OfB(_) => false,
             Corner::Crossing(i, _) => is_cut(i),
         }
@@ -288,7 +291,8 @@ impl<'a> FacePair<'a> {
             Corner::OfB(j) => {
                 let ring = self.pair.b.face_vertices(self.face_b);
                 let at = self.pair.b.vertex(ring[j]);
-                is_cut(before(j, ring.len()), at) || is_cut(j, at)
+                let Pair { solids, piece, .. } = self.pair;
+                solids.fixed.runs_on(piece, self.face_b, j) || is_cut(before(j, ring.len()), at) || is_cut(j, at)
             }
             Corner::Crossing(_, j) => is_cut(j, foot),
         }

@@ -26,6 +26,9 @@ pub(crate) fn cover_of<'a>(
     let normal = piece.face_plane(face).normal;
     let ring: Vec<DVec3> = piece.face_vertices(face).iter().map(|v| piece.vertex(*v)).collect();
     let whole = polygon_area(&ring, normal);
+    // A cut near a tip: what covers it narrows, and a little outside of the face leaves a strip open around it.
+    let around: f64 = ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| a.distance(*b)).sum();
+    let strip = 16.0 * tolerance * around;
     let mut open = vec![ring];
     for other in others {
         let height = |f: FaceId| {
@@ -36,7 +39,7 @@ pub(crate) fn cover_of<'a>(
         open = open.into_iter().flat_map(|polygon| cut_out(polygon, &heights).0).collect();
     }
     let left: f64 = open.iter().map(|polygon| polygon_area(polygon, normal)).sum();
-    if left <= 1e-4 * whole {
+    if left <= 1e-4 * whole + strip {
         Cover::Internal
     } else if left < (1.0 - 1e-6) * whole {
         Cover::Partial

@@ -36,6 +36,8 @@ pub(crate) struct Seams {
     live_edges: Vec<Vec<bool>>,
     /// For each piece, face and side: how much of the side the surface goes on beyond.
     sides: Vec<Vec<Vec<Cover>>>,
+    /// For each piece, face and vertex of it whether a border of the face runs straight on there in another piece.
+    straight: Vec<Vec<Vec<bool>>>,
     /// For each piece and face whether it ends at an obtuse hollow joint somewhere.
     hollow: Vec<Vec<bool>>,
     /// For each piece and face whether it goes on beyond some side as another face of the piece, but for less than [`FALL`].
@@ -100,6 +102,7 @@ impl Seams {
             cover,
             live_edges: Vec::new(),
             sides: Vec::new(),
+            straight: Vec::new(),
             hollow: Vec::new(),
             facets,
             at_vertex: Vec::new(),
@@ -114,6 +117,7 @@ impl Seams {
         seams.over_face = (0..n).map(|a| seams.planes_over_faces(a)).collect();
         seams.live_edges = (0..n).map(|a| seams.find_live_edges(a)).collect();
         seams.sides = (0..n).map(|a| seams.find_sides(a)).collect();
+        seams.straight = (0..n).map(|a| seams.find_straight(a)).collect();
         seams.hollow = (0..n).map(|a| seams.find_hollow(a)).collect();
         seams
     }
@@ -202,6 +206,19 @@ impl Seams {
         p.faces().map(|f| (0..p.face_vertices(f).len()).map(|s| of_side(f, s)).collect()).collect()
     }
 
+    fn find_straight(&self, piece: usize) -> Vec<Vec<bool>> {
+        let p = &self.pieces[piece];
+        let of_face = |face: FaceId| {
+            let ring = p.face_vertices(face);
+            let runs_on = |i: usize| {
+                let [before, at, after] = [i + ring.len() - 1, i, i + 1].map(|k| p.vertex(ring[k % ring.len()]));
+                [before, after].iter().any(|from| self.is_in_another(piece, at, (at - *from).normalize_or_zero(), FALL))
+            };
+            (0..ring.len()).map(runs_on).collect()
+        };
+        p.faces().map(of_face).collect()
+    }
+
     fn find_hollow(&self, piece: usize) -> Vec<bool> {
         let p = &self.pieces[piece];
         let rises = |face: FaceId, side: usize| {
@@ -262,6 +279,12 @@ impl Seams {
         }
     }
 
+    /// Whether the face's `corner`-th vertex is one that only a cut makes, at a border of the surface that runs straight on there: in a
+    /// piece that narrows, the surface does not go on beyond the end of the cut itself.
+    pub fn runs_on(&self, piece: usize, face: FaceId, corner: usize) -> bool {
+        self.straight[piece][face.index()][corner]
+    }
+
     /// Whether the face is one of several facets that are one face but for a bend that meshes have: see [`is_same_face`].
     pub fn is_facet(&self, piece: usize, face: FaceId) -> bool {
         self.facets[piece][face.index()]
@@ -289,14 +312,18 @@ impl Seams {
         let [from, to] = side_ends(p, face, side);
         let outward = (to - from).cross(normal).normalize_or_zero();
         // Bevels are shallow, so what lies beyond is told by the planes that meet at the point, not by a point farther on.
-        let beyond = outward + normal * rise;
+        self.is_in_another(piece, point, outward + normal * rise, FLAT)
+    }
+
+    /// Whether what lies beyond `point` in a unit direction is another piece, which may bend away from it by `bend` radians.
+    fn is_in_another(&self, piece: usize, point: DVec3, beyond: DVec3, bend: f64) -> bool {
         let here = 8.0 * self.tolerance;
         self.neighbors[piece].iter().any(|&other| {
             let q = &self.pieces[other as usize];
             q.faces().all(|f| {
                 let plane = q.face_plane(f);
                 let above = plane.signed_distance(point);
-                above < -here || above <= self.level && plane.normal.dot(beyond) <= FLAT
+                above < -here || above <= self.level && plane.normal.dot(beyond) <= bend
             })
         })
     }
