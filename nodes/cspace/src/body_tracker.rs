@@ -1,6 +1,6 @@
 use crate::audit::AuditScratch;
 use crate::bvh::{Aabb, Bvh};
-use crate::placed::At;
+use crate::placed::{At, Placed};
 use crate::tracker::PairState;
 use crate::{Body, Tracked, World};
 use spatial::{DVec3, Pose};
@@ -8,6 +8,13 @@ use std::sync::Arc;
 
 /// Most obstacle pieces that one moving part keeps in view at a time.
 pub const MAX_NEAR_PIECES: usize = 4096;
+
+/// Ticks at the present speed for which a pair may be calm.
+const CALM_TICKS: f64 = 16.0;
+/// Such times after which it is asked again at the latest.
+const MOST_ASK_AFTER: f64 = 8.0;
+/// The speed that counts at least and at most, in radii of the part a tick.
+const PACE: [f64; 2] = [1e-6, 1e-3];
 
 /// A pair nearer than the margin, and what its tracker says.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +34,11 @@ struct Seen {
     state: PairState,
     /// The part's odometer up to which the pair is known to stay apart.
     apart_until: f64,
+    /// The same, up to which it is known to be calm, or from which on that is worth asking.
+    calm_until: f64,
+    ask_calm: f64,
+    /// After how many times that long, next.
+    ask_after: f64,
 }
 
 /// One convex part of A and the pieces in its view.
@@ -140,14 +152,24 @@ impl BodyTracker {
         *overflow = 0;
         for (index, part) in parts.iter_mut().enumerate() {
             let at = At::new(&part.body, pose);
-            part.look(tree, &at, *most, overflow);
+            let moved = part.look(tree, &at, *most, overflow);
             for seen in &mut part.seen {
                 if part.odometer < seen.apart_until - margin {
                     continue;
                 }
-                let fresh = !seen.state.is_seeded();
-                let mut tracked = seen.state.step(&part.body, &pieces[seen.piece as usize], scratch, &at);
-                tracked.reseeded &= !(fresh && tracked.is_free());
+                let piece = &pieces[seen.piece as usize];
+                let placed = Placed::new(&part.body, piece, &at);
+                let calm = if part.odometer < seen.calm_until { seen.state.calm_step(&placed) } else { None };
+                let tracked = match calm {
+                    Some(tracked) => tracked,
+                    None => {
+                        let fresh = !seen.state.is_seeded();
+                        let mut tracked = seen.state.step(&part.body, piece, scratch, &at);
+                        tracked.reseeded &= !(fresh && tracked.is_free());
+                        seen.look_for_calm(&placed, part.odometer, moved);
+                        tracked
+                    }
+                };
                 seen.apart_until = part.odometer + tracked.distance;
                 if tracked.distance <= margin {
                     active.push(ActivePair { part: index as u32, piece: seen.piece, tracked });
@@ -159,8 +181,8 @@ impl BodyTracker {
 }
 
 impl Part {
-    /// Counts the way, and looks around when the view is out of date.
-    fn look(&mut self, tree: &Bvh, at: &At<'_>, margin: f64, overflow: &mut u32) {
+    /// Counts the way, and looks around when the view is out of date. Returns the way since the last pose, metres.
+    fn look(&mut self, tree: &Bvh, at: &At<'_>, margin: f64, overflow: &mut u32) -> f64 {
         let moved = self.last.map_or(f64::INFINITY, |(pose, center)| {
             let turn = 2.1 * self.body.radius * (at.pose.rotation - pose.rotation).length();
             (at.center - center).length() + turn
@@ -170,7 +192,7 @@ impl Part {
             self.odometer += moved;
         }
         if moved.is_finite() && self.odometer < self.view_until {
-            return;
+            return moved;
         }
         // Room for a hundred ticks at this speed, within reason.
         let r = self.body.radius;
@@ -188,13 +210,36 @@ impl Part {
                 *seen = *o;
             }
         }
+        moved
+    }
+}
+
+impl Seen {
+    fn new(piece: u32) -> Self {
+        let never = f64::NEG_INFINITY;
+        Self { piece, state: PairState::NEW, apart_until: never, calm_until: never, ask_calm: never, ask_after: 1.0 }
+    }
+
+    /// Asks whether the pair is calm for some ticks at this speed; the longer it has not been, the more rarely.
+    fn look_for_calm(&mut self, placed: &Placed<'_>, odometer: f64, moved: f64) {
+        if odometer < self.ask_calm {
+            return;
+        }
+        let [least, most] = PACE.map(|pace| pace * placed.a.radius);
+        let way = CALM_TICKS * moved.clamp(least, most);
+        if self.state.is_calm(placed, way) {
+            (self.calm_until, self.ask_after) = (odometer + way, 1.0);
+        } else {
+            (self.ask_calm, self.ask_after) =
+                (odometer + self.ask_after * way, (2.0 * self.ask_after).min(MOST_ASK_AFTER));
+        }
     }
 }
 
 fn tree_into(tree: &Bvh, center: DVec3, radius: f64, seen: &mut Vec<Seen>, overflow: &mut u32) {
     tree.query(center, radius, |piece| {
         if seen.len() < seen.capacity() {
-            seen.push(Seen { piece, state: PairState::NEW, apart_until: f64::NEG_INFINITY });
+            seen.push(Seen::new(piece));
         } else {
             *overflow += 1;
         }

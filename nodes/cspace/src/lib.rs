@@ -12,6 +12,7 @@ mod bvh;
 mod c_face;
 mod c_face_patch;
 mod c_face_polygon;
+mod calm;
 mod certificate;
 mod contact;
 mod convex_cut;

@@ -103,6 +103,20 @@ impl PairState {
         self.near
     }
 
+    /// Whether Near surely stays what it is while A moves by no more than `way`, metres: see [`Placed::is_calm`].
+    pub(crate) fn is_calm(&self, placed: &Placed<'_>, way: f64) -> bool {
+        self.seeded
+            && self.rival.is_none()
+            && way < 0.1 * jump(placed)
+            && placed.is_calm(self.near, &self.certificate, way)
+    }
+
+    /// What a step says of a pair that is calm; none if Near may not be applicable.
+    #[inline]
+    pub(crate) fn calm_step(&self, placed: &Placed<'_>) -> Option<Tracked> {
+        placed.plane_if_applicable(self.near).map(Tracked::quick)
+    }
+
     /// One step: see [`Tracker::step`].
     #[inline]
     pub(crate) fn step(&mut self, a: &Body, b: &Body, scratch: &mut AuditScratch, at: &At<'_>) -> Tracked {
