@@ -52,7 +52,7 @@ fn link(vertices: &[DVec3], size: f64, loops: Vec<(usize, Vec<u32>)>) -> Result<
         face_faces.push_row(row_faces);
     }
     let rings = vertex_rings(vertices.len(), &loops, &side, &edge_of)?;
-    let corners = rings.edges.start.windows(2).filter(|w| w[0] != w[1]).count();
+    let corners = rings.edges.spans.iter().filter(|[from, to]| from != to).count();
     if corners + loops.len() != edges.len() + 2 {
         return Err(PolyhedronError::NotOneBody { face: 0 });
     }

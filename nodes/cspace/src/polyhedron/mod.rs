@@ -29,23 +29,26 @@ pub struct Edge {
 /// Rows of different length in one array.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rows<T> {
-    start: Vec<u32>,
+    /// From where to where each row goes.
+    spans: Vec<[u32; 2]>,
     items: Vec<T>,
 }
 
 impl<T> Rows<T> {
     pub(crate) fn new() -> Self {
-        Self { start: vec![0], items: Vec::new() }
+        Self { spans: Vec::new(), items: Vec::new() }
     }
 
     pub(crate) fn push_row(&mut self, row: impl IntoIterator<Item = T>) {
+        let from = self.items.len() as u32;
         self.items.extend(row);
-        self.start.push(self.items.len() as u32);
+        self.spans.push([from, self.items.len() as u32]);
     }
 
     #[inline]
     pub(crate) fn row(&self, i: usize) -> &[T] {
-        &self.items[self.start[i] as usize..self.start[i + 1] as usize]
+        let [from, to] = self.spans[i];
+        &self.items[from as usize..to as usize]
     }
 }
 

@@ -189,7 +189,8 @@ impl DepthLaw {
         let touches = &mut self.scp.touches;
         for i in 0..touches.len() {
             let t = touches[i];
-            if t.push > 0.0 && !touches.iter().any(|u| u.first < u.end && is_equal(&t, u)) {
+            let has_own = t.first < t.end;
+            if t.push > 0.0 && !has_own && !touches.iter().any(|u| u.first < u.end && is_equal(&t, u)) {
                 let (a, b) = (solids.part(t.part as usize), solids.piece(t.piece as usize));
                 let at = contact_point_turned(t.plane.contact, a, b, placed.x, &placed.r);
                 let on_b = match t.plane.contact {

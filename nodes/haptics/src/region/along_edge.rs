@@ -11,6 +11,8 @@ use spatial::DVec3;
 
 /// Two edges that cross less steeply have a common normal that turns too fast to tell how, sine.
 const STEEP: f64 = 0.5;
+/// By how much what is clear of the edge may shrink, since its slopes do, while what was found holds.
+const GROWS: f64 = 1.5;
 
 /// Which edge lies along which face, and the sides that its ends lie beyond, or close to.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +80,7 @@ impl EdgeOnFace {
             let p = side.signed_distance(foot);
             let q = p + side.normal.dot(along);
             if p > clear && q > clear {
-                return Some((None, Gone { way: (p.min(q) - (2.0 * clear).max(tolerance)) / moves, turn }));
+                return Some((None, Gone { way: (p.min(q) - (GROWS * clear).max(tolerance)) / moves, turn }));
             }
             match [p.abs() <= clear, q.abs() <= clear] {
                 [false, false] => {
@@ -95,13 +97,13 @@ impl EdgeOnFace {
         }
         found.cuts = [span.enter.side, span.leave.side];
         let is_double = (0..2).any(|k| found.cuts[k] != Cut::NONE && found.close[k] != Cut::NONE);
-        let way = if is_double { 0.0 } else { (off - 2.0 * clear) / moves };
+        let way = if is_double { 0.0 } else { (off - GROWS * clear) / moves };
         Some((Some(found), Gone { way, turn }))
     }
 
     /// The same for as long as it holds.
     pub fn while_moving(self) -> Self {
-        Self { clear: 2.0 * self.clear, ..self }
+        Self { clear: GROWS * self.clear, ..self }
     }
 
     /// Appends the contacts, where they are now. False, and nothing, if they are not or may not be all of the region.
@@ -187,7 +189,7 @@ fn steadiness(
         }
         _ => (1.0, 1.0),
     };
-    let own = (0.5 * slope).min(rise / (2.0 * a.size())) / turns;
+    let own = ((1.0 - 1.0 / GROWS) * slope).min(rise / (2.0 * a.size())) / turns;
     (own.min(0.5 * lead).min(0.05).min((faces.least_cosine() - 0.2) / turns), moves)
 }
 

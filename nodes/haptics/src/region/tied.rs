@@ -197,11 +197,11 @@ fn lone_crossing(
     if !(beyond < -clear) {
         return None;
     }
-    // So far as the slopes stay at least 0.4, the angle 0.75 of what they are: the common normal then turns by no more than 1.4 times
+    // So far as the slopes stay at least 0.78, the angle 0.9 of what they are: the common normal then turns by no more than 1.2 times
     // the part's turn over the angle, and the crossing moves by no more than twice its way over the angle.
     let is_shallow = near.distance.abs() < 0.1 * lever * cross;
-    let turn = if is_shallow { 0.25 * cross * slope.min(cross) } else { 0.0 };
-    let slack = Gone { way: (-beyond - 4.0 * clear) * cross / 2.0, turn };
+    let turn = if is_shallow { 0.1 * cross * slope.min(cross) } else { 0.0 };
+    let slack = Gone { way: (-beyond - 1.5 * clear) * cross / 2.0, turn };
     Some((Settled::Crossing, slack))
 }
 
