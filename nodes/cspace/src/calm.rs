@@ -1,7 +1,8 @@
-//! A pair that is calm: however A moves within some way of a pose, Near stays Near, and its depth the least.
+//! A pair that is calm: however A moves within some way of a pose, Near stays Near as long as it is applicable, and its depth the least.
 //!
-//! Each test is one of those that a step makes ([`crate::stay`], [`crate::certificate`]), passed by as much as its numbers can change:
-//! no point of A moves by more than the way, no direction turns by more than the way over A's radius.
+//! Each test is one of those that a step makes (`stay`, `certificate`), passed by as much as its numbers can change: no point of A moves
+//! by more than the way, no direction turns by more than the way over A's radius. Whether Near is applicable is told at each pose: where
+//! parts are nearly aligned, as they are in a hand, that hangs on angles too small to leave room.
 
 use crate::certificate::Certificate;
 use crate::crossing::normal_between;
@@ -59,7 +60,7 @@ impl Placed<'_> {
         Some(CFace { contact: node, normal_w, distance })
     }
 
-    /// Whether the pair is calm within a way, metres.
+    /// Whether the pair is calm within a way, metres: see above.
     pub(crate) fn is_calm(&self, node: BasicContact, certificate: &Certificate, way: f64) -> bool {
         let turn = way / self.a.radius;
         let calm = match node {
