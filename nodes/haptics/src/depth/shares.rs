@@ -118,19 +118,18 @@ impl Shares {
             _ => {
                 let n = ring.len();
                 let next = |i: usize| if i + 1 == n { 0 } else { i + 1 };
-                let sees = |i: usize| {
+                // Twice the area between a side and the contact, `< 0` if the contact lies beyond.
+                let area = |ring: &[u16], i: usize| {
                     let (from, to) = (at(ring[i]), at(ring[next(i)]));
-                    normal.dot((to - from).cross(p - from)) < 0.0
+                    normal.dot((to - from).cross(p - from))
                 };
-                let Some(seen) = (0..n).find(|i| sees(*i) && !sees(if *i == 0 { n - 1 } else { *i - 1 })) else {
-                    return;
-                };
+                // From the side that it sees best: along a line of contacts rounding tells what it sees of each.
+                let best = (0..n).map(|i| (area(ring, i), i)).min_by(|a, b| a.0.total_cmp(&b.0));
+                let Some((_, best)) = best.filter(|(area, _)| *area < 0.0) else { return };
+                let before = (1..n).take_while(|k| area(ring, (best + n - k) % n) < 0.0).count();
                 // The corners between the sides that it sees make room for it.
-                ring.rotate_left(seen);
-                let sees = |i: usize| {
-                    let (from, to) = (at(ring[i]), at(ring[next(i)]));
-                    normal.dot((to - from).cross(p - from)) < 0.0
-                };
+                ring.rotate_left((best + n - before) % n);
+                let sees = |i: usize| area(ring, i) < 0.0;
                 let last = (1..n).take_while(|i| sees(*i)).last().unwrap_or(0);
                 ring.drain(1..=last);
                 ring.insert(1, k);
@@ -217,6 +216,28 @@ mod tests {
         // Contacts along a line: its ends.
         let line = [2.0, 1.0, 0.0, -1.0, 3.0].map(|x| DVec3::X * x);
         assert_eq!(spread(&line, &[1.0, 0.9, 0.8, 0.7, 0.4])[4], 0.4);
+    }
+
+    /// An edge over two sides of a face: its ends and the two crossings lie on one line but for rounding.
+    #[test]
+    fn what_rounding_says_of_contacts_on_a_line_does_not_matter() {
+        let z = 0.008_058_090_815_212_94;
+        let places = |corner: f64, ys: [f64; 2], x: f64| {
+            [
+                DVec3::new(corner, corner, z),
+                DVec3::new(corner, ys[0], z),
+                DVec3::new(x, corner, z),
+                DVec3::new(0.020_360_634_635_104_662, 0.012_843_914_038_974_736, z),
+                DVec3::new(0.001_939_653_983_032_825_4, ys[1], z),
+            ]
+        };
+        let ys = [0.012_996_400_974_220_203, 0.020_632_846_688_317_344];
+        let whole = places(0.02, ys, 0.003_436_348_989_402_594_2);
+        let cut = places(0.020_000_000_000_000_004, [0.012_996_400_974_220_201, ys[1]], 0.003_436_348_989_402_584);
+        let weights = [1.0, 1.0, 1.0, 0.639_365_364_895_349_2, 0.367_153_311_682_667_96];
+        let [expected, found] = [whole, cut].map(|p| spread(&p, &weights));
+        assert!(expected[1] < 0.5 && expected[2] < 0.7, "the ends of the line take over: {expected:?}");
+        assert!(expected.iter().zip(&found).all(|(w, f)| (w - f).abs() < 1e-6), "{expected:?} {found:?}");
     }
 
     #[test]
