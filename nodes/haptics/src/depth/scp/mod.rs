@@ -2,6 +2,7 @@
 
 mod hold;
 mod refine;
+mod unfelt;
 
 use crate::projection::{Projection, Row};
 use crate::region::TIED;
@@ -9,13 +10,12 @@ use crate::solid::{Covered, OnePlane, Pair, Placed, SAME, Sense, Sensed, Solids,
 use cspace::{BasicContact, CFace};
 use hold::Held;
 use spatial::{DVec3, Pose};
+use unfelt::{Unfelt, is_parted};
 
 /// Pairs this close to the hand may bound the SCP, metres.
 pub(crate) const SCP_MARGIN: f64 = 5e-3;
 /// A pair is free of the SCP when its plane is violated by no more than this, metres; and touches up to as much above it.
 const FREED: f64 = 1e-9;
-/// A felt plane that lies no more than this part of the depth behind its seam is taken without a look at others.
-const CLOSE: f64 = 0.1;
 /// Another plane of a pair is taken where the square of the way to the SCP becomes less than this part of it.
 const NEARER: f64 = 1.0 - 1e-6;
 /// An SCP farther than this many depths from the hand is compared with what other starts lead to.
@@ -45,32 +45,6 @@ impl Touch {
     /// The plane where its contacts are looked for.
     pub fn plane_there(&self) -> CFace {
         CFace { distance: self.left, ..self.plane }
-    }
-}
-
-/// A penetrating pair whose nearest plane is a seam, and its nearest felt plane once that has been looked for.
-#[derive(Clone, Copy, Debug)]
-struct Unfelt {
-    pair: Sensed,
-    plane: Option<Option<CFace>>,
-    /// The plane of some face proves it free where the others lead.
-    parted: bool,
-}
-
-impl Unfelt {
-    /// Whether this felt plane lies so close behind the seam that it is a side of the solid there, and not a far one.
-    fn is_close(&self, plane: &CFace) -> bool {
-        self.pair.near.distance - plane.distance <= -CLOSE * self.pair.near.distance
-    }
-
-    /// The pair's nearest felt plane, which is looked for once.
-    fn felt_plane(&mut self, solids: &Solids, placed: &Placed, hints: &mut [Option<BasicContact>]) -> Option<CFace> {
-        let near = &self.pair.near;
-        *self.plane.get_or_insert_with(|| {
-            let pair = Pair::of(solids, &self.pair, placed);
-            let hint = &mut hints[pair.part * solids.world.fixed.len() + pair.piece];
-            pair.felt_plane(near, Covered::Felt, hint)
-        })
     }
 }
 
@@ -301,7 +275,7 @@ impl Scp {
             if Pair::of(solids, s, placed).is_felt(&s.near, Covered::Unfelt) {
                 self.touch(solids, s.part, s.piece, s.near);
             } else if s.near.distance < 0.0 || !depth_alone {
-                self.unfelt.push(Unfelt { pair: *s, plane: None, parted: false });
+                self.unfelt.push(Unfelt::new(s));
             }
         }
         if self.unfelt.is_empty() && depth_alone {
@@ -319,65 +293,6 @@ impl Scp {
         self.touches.iter().map(|t| -t.plane.distance).fold(0.0, f64::max)
     }
 
-    /// A pair whose nearest plane is a seam needs a felt plane of its own only where the others do not free it anyway: one
-    /// plane with `f >= 0` at the SCP, felt or not, proves freedom. Those whose felt plane lies close behind the seam come first,
-    /// then those where it lies least behind: the others may then be free rather than pushed out on a far side.
-    /// But a way of more than `far` metres frees none whose felt plane lies close behind the seam.
-    fn add_unfelt(&mut self, solids: &Solids, placed: &Placed, far: f64) {
-        loop {
-            let Self { touches, unfelt, hints, projection, .. } = self;
-            let shift = DVec3::from_array(projection.z);
-            let freed = |c: &CFace| c.distance + c.normal_w.dot(shift) >= -FREED;
-            let mut next = None;
-            let mut least = f64::INFINITY;
-            for (k, u) in unfelt.iter_mut().enumerate().filter(|(_, u)| !u.parted && !freed(&u.pair.near)) {
-                if let Some(plane) = u.felt_plane(solids, placed, hints)
-                    && u.pair.near.distance - plane.distance < least
-                {
-                    least = u.pair.near.distance - plane.distance;
-                    next = Some((k, plane));
-                    if u.is_close(&plane) {
-                        break;
-                    }
-                }
-            }
-            let Some((k, plane)) = next else { break };
-            let Sensed { part, piece, .. } = unfelt[k].pair;
-            // An equal plane adds nothing to the force, but its contacts belong to the region.
-            let again = !freed(&plane);
-            // Near may be a joint that the way out runs along; then the plane of any face is proof as well, and so is one that holds
-            // the SCP: it has what lies behind a rim behind it.
-            let is_way_out = shift.length_squared() <= far * far || !unfelt[k].is_close(&plane);
-            let there = placed.shifted(shift);
-            let at_scp = Pair::new(solids, part, piece, &there);
-            if again && is_way_out && is_parted(&at_scp, touches, projection) {
-                unfelt[k].parted = true;
-                continue;
-            }
-            unfelt.swap_remove(k);
-            self.touch(solids, part, piece, plane);
-            if again {
-                self.projection.solve(&self.rows);
-            }
-        }
-    }
-
-    /// Adds the pairs that the others free, but that touch at the SCP all the same: their contacts belong to the region.
-    fn add_beside(&mut self, solids: &Solids, placed: &Placed) {
-        let shift = DVec3::from_array(self.projection.z);
-        for k in 0..self.unfelt.len() {
-            let Sensed { part, piece, near } = self.unfelt[k].pair;
-            let touches =
-                |c: &CFace| (-FREED..=4.0 * tie_of(solids, part)).contains(&(c.distance + c.normal_w.dot(shift)));
-            if touches(&near) {
-                let plane = self.unfelt[k].felt_plane(solids, placed, &mut self.hints);
-                if let Some(plane) = plane.filter(touches) {
-                    self.touch(solids, part, piece, plane);
-                }
-            }
-        }
-    }
-
     fn touch(&mut self, solids: &Solids, part: u32, piece: u32, plane: CFace) {
         self.touches.push(Touch {
             part,
@@ -392,14 +307,6 @@ impl Scp {
         });
         self.rows.push(row(&plane));
     }
-}
-
-/// Whether the pair is proven free where the part is, by the plane of any face, or apart by one that holds the part there. What
-/// only touches that one is a contact of the same wall.
-fn is_parted(pair: &Pair<'_>, touches: &[Touch], projection: &Projection<3>) -> bool {
-    let mut holding = projection.active().map(|(i, _)| touches[i].plane.normal_w);
-    let apart = 4.0 * tie_of(pair.solids, pair.part as u32);
-    pair.a_face_parts(FREED) || holding.any(|n| pair.is_parted_along(n, -apart))
 }
 
 fn row(plane: &CFace) -> Row<3> {

@@ -56,17 +56,6 @@ impl Scp {
         found
     }
 
-    /// Takes also the sides of the solid close behind seams that only the way out freed: where there is none they hold the part.
-    fn touch_unfelt(&mut self, solids: &Solids, placed: &Placed) {
-        while let Some(mut u) = self.unfelt.pop() {
-            let plane = u.felt_plane(solids, placed, &mut self.hints);
-            if let Some(plane) = plane.filter(|p| u.is_close(p)) {
-                self.touch(solids, u.pair.part, u.pair.piece, plane);
-                self.nearest.extend(self.touches.last().copied());
-            }
-        }
-    }
-
     /// Takes the planes nearest to the hand.
     pub(super) fn take_nearest(&mut self) {
         self.touches.clear();
