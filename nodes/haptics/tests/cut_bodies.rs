@@ -289,6 +289,33 @@ fn corners_that_only_a_cut_makes_weigh_nothing() {
     assert!(turned > 500, "{turned}");
 }
 
+/// An edge of a box lies along a bevel and passes over the bevel's corner, where the next bevel is as parallel to the box.
+#[test]
+fn an_edge_along_a_bevel_touches_it_from_its_end_to_the_corner() {
+    let ring = |half: f64, z: f64| {
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x * half, y * half, z) * 1e-3)
+    };
+    let block = hull(&[ring(40.0, -30.0), ring(40.0, -10.0), ring(20.0, 0.0)].concat());
+    let half = DVec3::splat(0.01);
+    let world = world(vec![cuboid(-half, half)], vec![block]);
+    for law in [LawKind::Paper, LawKind::Pstar] {
+        let gains = Gains { law, ..Gains::default() };
+        for (turn, over) in [-0.6, -0.2, 0.0, 0.2].into_iter().flat_map(|t| [-1.0, 1.0].map(|y| (t, y))) {
+            let rotation = DQuat::from_rotation_y(turn);
+            let edge = rotation * DVec3::new(-0.01, 0.0, -0.01);
+            let on_bevel = DVec3::new(0.030, 0.0, -0.005) - DVec3::new(1.0, 0.0, 2.0) * 1e-4;
+            // One end of the edge lies past the corner at x = 30 mm.
+            let hand = Pose::new(on_bevel - edge + DVec3::Y * (over * 0.027), rotation);
+            let out = Renderer::new(world.clone()).render(&hand, &gains, 1e-3);
+            let [depth, expected] = [out.depth, 1e-4 * 5f64.sqrt()];
+            assert!((depth - expected).abs() < 1e-12, "{law:?}, {turn}, {over}: {depth} for {expected}");
+            let ends: Vec<f64> = out.formation.points().iter().map(|c| c.point_w.y * over).collect();
+            let reaches = |y: f64| ends.iter().any(|e| (e - y).abs() < 2e-4);
+            assert!(ends.len() == 2 && reaches(0.017) && reaches(0.030), "{law:?}, {turn}, {over}: {ends:?}");
+        }
+    }
+}
+
 /// Files of few digits leave gaps between the pieces of a floor: a tip does not fall into them.
 #[test]
 fn a_tip_led_over_gaps_that_rounding_left_feels_a_whole_floor() {

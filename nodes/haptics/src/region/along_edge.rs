@@ -1,7 +1,7 @@
 //! An edge of A that lies along a face of B, and all else of A out of reach: the contacts are where the face's sides cut it.
 
 use crate::region::face_pair::{Corner, FacePair};
-use crate::region::facing_faces::most_parallel_by;
+use crate::region::facing_faces::{each_beside_chosen, most_parallel_by};
 use crate::region::point::{RegionPoint, Scope, own_tolerance, push_within};
 use crate::region::span::{Cut, Span};
 use crate::region::way::Gone;
@@ -43,7 +43,7 @@ impl EdgeOnFace {
         scope: &Scope,
         lever: f64,
     ) -> Option<(Option<Self>, Gone)> {
-        let Pair { a, placed, .. } = *pair;
+        let Pair { a, b, placed, .. } = *pair;
         let (slope, rise) = slope_at_ends(a, edge, up, within)?;
         let tolerance = own_tolerance(pair);
         let clear = (2.0 * within / slope).max(tolerance);
@@ -70,7 +70,16 @@ impl EdgeOnFace {
             clear,
         };
         let ends = found.ends.map(|v| placed.point(a.vertex(v)));
-        let (turn, moves) = steadiness(near, &faces, ends, (slope, rise, lead), lever);
+        let (mut turn, moves) = steadiness(near, &faces, ends, (slope, rise, lead), lever);
+        // What lies along another face at the edges, too, is cut by the sides of that.
+        let mut is_lone = true;
+        each_beside_chosen(pair, near, chosen, |height, _| {
+            is_lone &= height > GROWS * 2.0 * within;
+            turn = turn.min((height - GROWS * 2.0 * within) / a.size().max(b.size()));
+        });
+        if !is_lone {
+            return None;
+        }
         let [foot, other] = ends.map(|p| faces.foot(p));
         let along = other - foot;
         let mut span = Span::WHOLE;

@@ -79,9 +79,8 @@ impl Clipper {
             facing_pairs(pair, near, &mut self.pairs);
         } else {
             self.pairs.extend(most_parallel(pair, near));
-            if !scope.along_near {
-                pairs_along_edges(pair, near, scope.reach, &mut self.pairs);
-            }
+            let reach = if scope.along_near { scope.reach - near.distance } else { scope.reach };
+            pairs_along_edges(pair, near, reach, &mut self.pairs);
         }
     }
 

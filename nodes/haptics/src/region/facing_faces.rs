@@ -38,20 +38,35 @@ pub(crate) fn facing_pairs(pair: &Pair<'_>, near: &CFace, out: &mut Vec<(FaceId,
 /// Adds to the pair of faces that was chosen at two crossing edges those of the other faces there that the other body's edge lies
 /// along, within `reach` metres: it crosses their far sides, too, and all these places bound the motion.
 pub(crate) fn pairs_along_edges(pair: &Pair<'_>, near: &CFace, reach: f64, out: &mut Vec<(FaceId, FaceId)>) {
+    if let Some(&chosen) = out.first() {
+        each_beside_chosen(pair, near, chosen, |height, faces| {
+            if height <= reach {
+                out.push(faces);
+            }
+        });
+    }
+}
+
+/// Gives `each`, at two crossing edges, the other faces there with the chosen one that the other edge belongs to; and how high that edge
+/// rises over it, over the length of its body, metres.
+pub(crate) fn each_beside_chosen(
+    pair: &Pair<'_>,
+    near: &CFace,
+    chosen: (FaceId, FaceId),
+    mut each: impl FnMut(f64, (FaceId, FaceId)),
+) {
     let Pair { solids, a, b, part, piece, placed } = *pair;
-    let (BasicContact::TypeC { edge_a, edge_b }, Some(&chosen)) = (near.contact, out.first()) else { return };
+    let BasicContact::TypeC { edge_a, edge_b } = near.contact else { return };
     let along_a = placed.r * a.edge_direction(edge_a);
     let along_b = placed.r.transpose() * b.edge_direction(edge_b);
     for face_a in a.edge(edge_a).faces {
-        let slope = a.face_plane(face_a).normal.dot(along_b).abs();
-        if face_a != chosen.0 && slope * a.size() <= reach && !solids.is_internal_a(part, face_a) {
-            out.push((face_a, chosen.1));
+        if face_a != chosen.0 && !solids.is_internal_a(part, face_a) {
+            each(a.face_plane(face_a).normal.dot(along_b).abs() * a.size(), (face_a, chosen.1));
         }
     }
     for face_b in b.edge(edge_b).faces {
-        let slope = b.face_plane(face_b).normal.dot(along_a).abs();
-        if face_b != chosen.1 && slope * b.size() <= reach && !solids.is_internal_b(piece, face_b) {
-            out.push((chosen.0, face_b));
+        if face_b != chosen.1 && !solids.is_internal_b(piece, face_b) {
+            each(b.face_plane(face_b).normal.dot(along_a).abs() * b.size(), (chosen.0, face_b));
         }
     }
 }
