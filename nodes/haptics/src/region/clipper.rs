@@ -28,6 +28,8 @@ type Other = Option<u32>;
 
 /// Normals that differ by less, radians, bound one motion.
 const ONE_DIRECTION: f64 = 1e-4;
+/// Normals that differ by more, radians, are those of different planes of contact.
+const OTHER_PLANE: f64 = 0.05;
 /// Most pairs of faces clipped for one contact.
 const MAX_PAIRS: usize = 24;
 
@@ -57,7 +59,7 @@ impl Clipper {
         if let Some(point_w) = own.filter(|_| near.distance <= scope.reach) {
             let sharpness = if scope.wide { own_sharpness(pair, near, point_w, scope) } else { 1.0 };
             let found = RegionPoint { sharpness, ..RegionPoint::of(near, point_w) };
-            push(found, (same, !scope.along_near), [first; 2], out);
+            push(found, (same, lead(near.normal_w, scope)), [first; 2], out);
         }
         self.start(pair, near, scope);
         let known = own.map(|_| near.contact);
@@ -137,12 +139,13 @@ impl Clipper {
         let same = same_place(&faces.pair);
         let ring = out.len();
         let goes_on = faces.may_go_on();
+        let lead = lead(faces.near_w, &faces.scope);
         let mut add = |corner: Corner, point: DVec3| {
             if goes_on {
                 faces.each_beyond(corner, point, same, &mut go_on);
             }
             if let Some(found) = faces.contact(corner, point).filter(|p| known != Some(p.contact)) {
-                push(found, (same, !faces.scope.along_near), [first, ring], out);
+                push(found, (same, lead), [first, ring], out);
             }
         };
         self.edges_of_a(faces, same, &mut add);
@@ -230,22 +233,33 @@ impl Clipper {
     }
 }
 
-/// Keeps a contact unless it is a duplicate of one from `first` on or there is no room; of two at one place the first stays, but
-/// where `apart` says that they bound the motion in different directions.
+/// Near's normal, if contacts at one place may bound the motion in different directions.
+fn lead(near_w: DVec3, scope: &Scope) -> Option<DVec3> {
+    (!scope.along_near).then_some(near_w)
+}
+
+/// Keeps a contact unless it is a duplicate of one from `first` on or there is no room; of two at one place the first stays. With a
+/// `lead`, both stay if they bound the motion in almost the same direction; else the body is free on either's side, and the one
+/// nearer to the lead stays: the other belongs to the region of another plane.
 /// From `ring` on they come in the order of a convex polygon's corners: there only neighbours can be at one place.
-fn push(p: RegionPoint, (same, apart): (f64, bool), [first, ring]: [usize; 2], out: &mut Vec<RegionPoint>) {
-    let there = |o: &RegionPoint| {
-        o.point_w.distance_squared(p.point_w) <= same * same
-            && !(apart && o.normal_w.distance_squared(p.normal_w) > ONE_DIRECTION * ONE_DIRECTION)
-    };
-    let known = || {
-        out[first..ring].iter().any(there)
-            || out[ring..].first().is_some_and(there)
-            || out[ring..].last().is_some_and(there)
-    };
-    if !known() {
-        push_within(out, p);
+fn push(p: RegionPoint, (same, lead): (f64, Option<DVec3>), [first, ring]: [usize; 2], out: &mut Vec<RegionPoint>) {
+    let (before, corners) = out[first..].split_at_mut(ring - first);
+    let (corner, rest) = corners.split_first_mut().unzip();
+    let others = before.iter_mut().chain(corner).chain(rest.and_then(|r| r.last_mut()));
+    for o in others.filter(|o| o.point_w.distance_squared(p.point_w) <= same * same) {
+        let apart = o.normal_w.distance_squared(p.normal_w);
+        match lead {
+            Some(lead) if apart > OTHER_PLANE * OTHER_PLANE => {
+                if p.normal_w.distance_squared(lead) < o.normal_w.distance_squared(lead) {
+                    *o = p;
+                }
+                return;
+            }
+            Some(_) if apart > ONE_DIRECTION * ONE_DIRECTION => {}
+            _ => return,
+        }
     }
+    push_within(out, p);
 }
 
 /// How much of a contact Near's own is, 0 to 1, at `point_w` on B.

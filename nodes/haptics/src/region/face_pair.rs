@@ -31,6 +31,8 @@ pub(crate) struct FacePair<'a> {
     face_a: FaceId,
     face_b: FaceId,
     pub scope: Scope,
+    /// Near's normal, axes of W.
+    pub near_w: DVec3,
     /// Unit, axes of W.
     sight: DVec3,
     /// Of A's face, inward.
@@ -54,7 +56,19 @@ impl<'a> FacePair<'a> {
             return None;
         }
         let highest = if scope.along_near { scope.reach * slope } else { scope.reach / lean };
-        Some(Self { pair: *pair, face_a, face_b, scope: *scope, sight, normal_a, plane_b, lean, slope, highest })
+        Some(Self {
+            pair: *pair,
+            face_a,
+            face_b,
+            scope: *scope,
+            near_w,
+            sight,
+            normal_a,
+            plane_b,
+            lean,
+            slope,
+            highest,
+        })
     }
 
     /// The vertices of A's face.
@@ -232,7 +246,7 @@ impl<'a> FacePair<'a> {
             Corner::Crossing(i, j) => {
                 let (edge_a, edge_b) = (self.pair.a.face_edges(self.face_a)[i], self.pair.b.face_edges(self.face_b)[j]);
                 let (normal_w, gap) = crossing(&self.pair, edge_a, edge_b, self.plane_b.normal, height);
-                if self.bounds_motion() && self.leans_away(normal_w, i, j) {
+                if self.bounds_motion() && gap <= self.scope.reach && self.leans_away(normal_w, i, j) {
                     return None;
                 }
                 (BasicContact::TypeC { edge_a, edge_b }, foot, normal_w, gap)
