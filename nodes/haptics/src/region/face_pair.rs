@@ -246,7 +246,7 @@ impl<'a> FacePair<'a> {
             Corner::Crossing(i, j) => {
                 let (edge_a, edge_b) = (self.pair.a.face_edges(self.face_a)[i], self.pair.b.face_edges(self.face_b)[j]);
                 let (normal_w, gap) = crossing(&self.pair, edge_a, edge_b, self.plane_b.normal, height);
-                if self.bounds_motion() && gap <= self.scope.reach && self.leans_away(normal_w, i, j) {
+                if !self.scope.along_near && gap <= self.scope.reach && self.leans_away(normal_w, i, j) {
                     return None;
                 }
                 (BasicContact::TypeC { edge_a, edge_b }, foot, normal_w, gap)
@@ -254,11 +254,6 @@ impl<'a> FacePair<'a> {
         };
         let gap = if self.scope.along_near { height / self.slope } else { gap };
         (gap <= self.scope.reach).then_some(RegionPoint { contact, sharpness: 1.0, point_w, normal_w, gap })
-    }
-
-    /// Whether the contacts are wanted as what bounds the motion, each along its own normal.
-    fn bounds_motion(&self) -> bool {
-        !self.scope.wide && !self.scope.along_near
     }
 
     /// Whether the normal of two edges, of A's face and of B's, leans away from the outside of either face: then an edge rises
