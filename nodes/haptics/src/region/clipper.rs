@@ -238,28 +238,31 @@ fn lead(near_w: DVec3, scope: &Scope) -> Option<DVec3> {
     (!scope.along_near).then_some(near_w)
 }
 
-/// Keeps a contact unless it is a duplicate of one from `first` on or there is no room; of two at one place the first stays. With a
-/// `lead`, both stay if they bound the motion in almost the same direction; else the body is free on either's side, and the one
-/// nearer to the lead stays: the other belongs to the region of another plane.
+/// Keeps a contact unless one from `first` on stands for it or there is no room: see [`stands_for`].
 /// From `ring` on they come in the order of a convex polygon's corners: there only neighbours can be at one place.
 fn push(p: RegionPoint, (same, lead): (f64, Option<DVec3>), [first, ring]: [usize; 2], out: &mut Vec<RegionPoint>) {
-    let (before, corners) = out[first..].split_at_mut(ring - first);
-    let (corner, rest) = corners.split_first_mut().unzip();
-    let others = before.iter_mut().chain(corner).chain(rest.and_then(|r| r.last_mut()));
-    for o in others.filter(|o| o.point_w.distance_squared(p.point_w) <= same * same) {
-        let apart = o.normal_w.distance_squared(p.normal_w);
-        match lead {
-            Some(lead) if apart > OTHER_PLANE * OTHER_PLANE => {
-                if p.normal_w.distance_squared(lead) < o.normal_w.distance_squared(lead) {
-                    *o = p;
-                }
-                return;
-            }
-            Some(_) if apart > ONE_DIRECTION * ONE_DIRECTION => {}
-            _ => return,
-        }
+    let known = |o: &mut RegionPoint| stands_for(o, &p, same, lead);
+    let is_known = out[first..ring].iter_mut().any(known)
+        || out[ring..].first_mut().is_some_and(known)
+        || out[ring..].last_mut().is_some_and(known);
+    if !is_known {
+        push_within(out, p);
     }
-    push_within(out, p);
+}
+
+/// Whether of two contacts at one place `p` is not to be kept. Seen along their own normals both stay if they bound the motion in almost
+/// the same direction; else the body is free on either's side, and the one nearer to the lead stays, as `o`: the other belongs to
+/// the region of another plane.
+fn stands_for(o: &mut RegionPoint, p: &RegionPoint, same: f64, lead: Option<DVec3>) -> bool {
+    if o.point_w.distance_squared(p.point_w) > same * same {
+        return false;
+    }
+    let Some(lead) = lead else { return true };
+    let apart = o.normal_w.distance_squared(p.normal_w);
+    if apart > OTHER_PLANE * OTHER_PLANE && p.normal_w.distance_squared(lead) < o.normal_w.distance_squared(lead) {
+        *o = *p;
+    }
+    !(ONE_DIRECTION * ONE_DIRECTION..=OTHER_PLANE * OTHER_PLANE).contains(&apart)
 }
 
 /// How much of a contact Near's own is, 0 to 1, at `point_w` on B.

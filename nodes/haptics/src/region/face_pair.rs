@@ -261,7 +261,8 @@ impl<'a> FacePair<'a> {
     fn leans_away(&self, normal_w: DVec3, i: usize, j: usize) -> bool {
         let Pair { a, b, placed, .. } = self.pair;
         normal_w.dot(b.face_sides(self.face_b)[j].normal) < -AWAY
-            || normal_w.dot(placed.r * a.face_sides(self.face_a)[i].normal) > AWAY
+            || normal_w.dot(self.normal_a) < 1.0 - 0.5 * AWAY * AWAY
+                && normal_w.dot(placed.r * a.face_sides(self.face_a)[i].normal) > AWAY
     }
 
     /// Whether a contact of these faces, at these places on A and on B, is one that only a cut in either body makes.
