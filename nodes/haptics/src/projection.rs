@@ -1,6 +1,8 @@
 //! The nearest point of a polyhedron to the origin: the quadratic program behind corners and proxy.
 #![expect(clippy::needless_range_loop, reason = "matrices and vectors walked by one index, as in the formulas")]
 
+mod direct;
+
 /// One inequality `normal . z >= offset`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<const N: usize> {

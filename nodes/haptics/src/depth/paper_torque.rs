@@ -21,19 +21,19 @@ pub(crate) fn torque(
     match hull.as_slice() {
         [] => (DVec3::ZERO, FormationKind::Free),
         [p] => (force.cross(x0 - *p), FormationKind::VertexFace),
-        [p, q] => (edge_rule(hull, (*q - *p).normalize(), normal, force, x0), FormationKind::EdgeFace),
+        [p, q] => (edge_rule(hull, *q - *p, normal, force, x0), FormationKind::EdgeFace),
         _ => (face_rule(hull, normal, force, x0), FormationKind::FaceFace),
     }
 }
 
-/// Rules (5) and (6) with the contact frame's x axis along `x_axis`; `tau^z = 0` by construction (4).
+/// Rules (5) and (6) with the contact frame's x axis along `x_axis`, of any length; `tau^z = 0` by construction (4).
 fn edge_rule(points: &[DVec3], x_axis: DVec3, normal: DVec3, force: DVec3, x0: DVec3) -> DVec3 {
     let z_axis = normal;
     // The segment may lean out of the contact plane by rounding.
     let x_axis = (x_axis - z_axis * x_axis.dot(z_axis)).normalize();
     let y_axis = z_axis.cross(x_axis);
     let k = points.len() as f64;
-    let least = ZERO * force.length();
+    let least2 = ZERO * ZERO * force.length_squared();
     let (mut sum_x, mut sum_y, mut positive, mut negative, mut zero) = (0.0, 0.0, false, false, false);
     for p in points {
         let arm = x0 - *p;
@@ -41,10 +41,10 @@ fn edge_rule(points: &[DVec3], x_axis: DVec3, normal: DVec3, force: DVec3, x0: D
         let (tx, ty) = (tau.dot(x_axis), tau.dot(y_axis));
         sum_x += tx;
         sum_y += ty;
-        let small = least * arm.length();
-        positive |= ty > small;
-        negative |= ty < -small;
-        zero |= ty.abs() <= small;
+        let is_zero = ty * ty <= least2 * arm.length_squared();
+        positive |= ty > 0.0 && !is_zero;
+        negative |= ty < 0.0 && !is_zero;
+        zero |= is_zero;
     }
     // Signs differ also where one torque is zero and another is not.
     let differ = u8::from(positive) + u8::from(negative) + u8::from(zero) > 1;

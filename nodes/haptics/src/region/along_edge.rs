@@ -152,25 +152,24 @@ impl EdgeOnFace {
         if span.is_empty() || !is_apart(&span.enter) || !is_apart(&span.leave) {
             return false;
         }
-        let corner = |cut: &Cut, vertex: u32| {
-            let corner = match cut.side {
-                Cut::NONE => Corner::OfA(vertex as usize),
-                side => Corner::Crossing(self.edge as usize, side as usize),
-            };
-            faces.contact(corner, ends[0] + (ends[1] - ends[0]) * cut.line)
+        let cuts = [&span.enter, &span.leave];
+        let corner = |k: usize| match cuts[k].side {
+            Cut::NONE => Corner::OfA([self.edge, self.next][k] as usize),
+            side => Corner::Crossing(self.edge as usize, side as usize),
         };
-        let (enter, leave) = (corner(&span.enter, self.edge), corner(&span.leave, self.next));
         // Near's own contact comes first, with the plane that it has; it counts even where the face goes on beyond.
-        let is_own = |p: &RegionPoint| p.contact == near.contact;
-        let own_point = match enter.iter().chain(&leave).find(|p| is_own(p)) {
-            Some(p) => Some(p.point_w),
+        let own = (0..2).find(|k| faces.basic_contact(corner(*k)) == near.contact);
+        let own_point = match own {
+            Some(k) => Some(foot + along * cuts[k].line),
             None => facing_point(pair, near, own_tolerance(pair)),
         };
         if let Some(point_w) = own_point {
             push_within(out, RegionPoint::of(near, point_w));
         }
-        for found in enter.iter().chain(&leave).filter(|p| !is_own(p)) {
-            push_within(out, *found);
+        for k in (0..2).filter(|k| own != Some(*k)) {
+            if let Some(found) = faces.contact(corner(k), ends[0] + (ends[1] - ends[0]) * cuts[k].line) {
+                push_within(out, found);
+            }
         }
         true
     }

@@ -233,23 +233,20 @@ impl<'a> FacePair<'a> {
         if self.scope.wide && self.is_cut_in_a(corner, point) || self.is_cut_in_b(corner, foot) {
             return None;
         }
-        let (contact, point_w, normal_w, gap) = match corner {
-            Corner::OfA(i) => {
-                let vertex_a = self.ring_a()[i];
-                (BasicContact::TypeB { vertex_a, face_b: self.face_b }, foot, self.plane_b.normal, height)
-            }
-            Corner::OfB(j) => {
-                let vertex_b = self.pair.b.face_vertices(self.face_b)[j];
-                let at = self.pair.b.vertex(vertex_b);
-                (BasicContact::TypeA { face_a: self.face_a, vertex_b }, at, self.normal_a, height * self.lean)
-            }
-            Corner::Crossing(i, j) => {
-                let (edge_a, edge_b) = (self.pair.a.face_edges(self.face_a)[i], self.pair.b.face_edges(self.face_b)[j]);
+        let contact = self.basic_contact(corner);
+        let (point_w, normal_w, gap) = match contact {
+            BasicContact::TypeB { .. } => (foot, self.plane_b.normal, height),
+            BasicContact::TypeA { vertex_b, .. } => (self.pair.b.vertex(vertex_b), self.normal_a, height * self.lean),
+            BasicContact::TypeC { edge_a, edge_b } => {
                 let (normal_w, gap) = crossing(&self.pair, edge_a, edge_b, self.plane_b.normal, height);
-                if !self.scope.along_near && gap <= self.scope.reach && self.leans_away(normal_w, i, j) {
+                if !self.scope.along_near
+                    && gap <= self.scope.reach
+                    && let Corner::Crossing(i, j) = corner
+                    && self.leans_away(normal_w, i, j)
+                {
                     return None;
                 }
-                (BasicContact::TypeC { edge_a, edge_b }, foot, normal_w, gap)
+                (foot, normal_w, gap)
             }
         };
         let gap = if self.scope.along_near { height / self.slope } else { gap };
@@ -263,6 +260,20 @@ impl<'a> FacePair<'a> {
         normal_w.dot(b.face_sides(self.face_b)[j].normal) < -AWAY
             || normal_w.dot(self.normal_a) < 1.0 - 0.5 * AWAY * AWAY
                 && normal_w.dot(placed.r * a.face_sides(self.face_a)[i].normal) > AWAY
+    }
+
+    /// The features that meet at a corner of the region.
+    #[inline]
+    pub fn basic_contact(&self, corner: Corner) -> BasicContact {
+        let Pair { a, b, .. } = self.pair;
+        let (face_a, face_b) = (self.face_a, self.face_b);
+        match corner {
+            Corner::OfA(i) => BasicContact::TypeB { vertex_a: self.ring_a()[i], face_b },
+            Corner::OfB(j) => BasicContact::TypeA { face_a, vertex_b: b.face_vertices(face_b)[j] },
+            Corner::Crossing(i, j) => {
+                BasicContact::TypeC { edge_a: a.face_edges(face_a)[i], edge_b: b.face_edges(face_b)[j] }
+            }
+        }
     }
 
     /// Whether a contact of these faces, at these places on A and on B, is one that only a cut in either body makes.

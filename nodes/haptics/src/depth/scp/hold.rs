@@ -115,7 +115,7 @@ impl Scp {
             self.held = Some(held);
             return Some(depth);
         }
-        self.projection.solve_again(&self.rows);
+        self.projection.hold_again(&self.rows);
         if self.projection.contradictions > 0 {
             return None;
         }
