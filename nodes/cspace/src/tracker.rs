@@ -127,15 +127,15 @@ impl PairState {
         let near_last = travel2 < self.travel2 && self.rival.is_none();
         let sure = near_last && chord2 < self.chord2;
         let steady = sure || near_last && chord2 < self.known2 && self.may_hold(&placed);
-        if steady
-            && let Some((near, inside)) = placed.stay(self.near, sure, self.tan_half)
+        let stays = if steady { placed.stay(self.near, sure, self.tan_half) } else { None };
+        if let Some((near, inside)) = stays
             && (near.distance > 0.0 || self.certificate.proves(&placed, &near, inside))
         {
             return Tracked::quick(near);
         }
         if steady
             && self.stayed
-            && let Some(tracked) = self.second_look(&placed, sure)
+            && let Some(tracked) = self.second_look(&placed, sure, stays)
         {
             return tracked;
         }
@@ -144,13 +144,21 @@ impl PairState {
 
     /// Near, where a closer look at its neighbours and at the fold along its side settle what a quick step left open.
     #[inline(never)]
-    fn second_look(&self, placed: &Placed<'_>, sure: bool) -> Option<Tracked> {
+    fn second_look(&self, placed: &Placed<'_>, sure: bool, stays: Option<(CFace, f64)>) -> Option<Tracked> {
         let mut planes = 1;
-        let (near, inside) = placed.stay_among(self.near, sure, &mut planes)?;
-        let proven = near.distance > 0.0
-            || self.certificate.proves(placed, &near, inside)
-            || self.certificate.proves(placed, &near, placed.folded_disc(&near, inside));
-        proven.then_some(Tracked { planes, ..Tracked::quick(near) })
+        let (near, inside) = match stays {
+            Some(unproven) => unproven,
+            None => {
+                let (near, inside) = placed.stay_among(self.near, sure, &mut planes)?;
+                if near.distance > 0.0 || self.certificate.proves(placed, &near, inside) {
+                    return Some(Tracked { planes, ..Tracked::quick(near) });
+                }
+                (near, inside)
+            }
+        };
+        self.certificate
+            .proves(placed, &near, placed.folded_disc(&near, inside))
+            .then_some(Tracked { planes, ..Tracked::quick(near) })
     }
 
     /// Whether Near is surely applicable; of two edges [`Placed::stay`] tells.
