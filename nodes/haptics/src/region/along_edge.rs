@@ -118,9 +118,10 @@ impl EdgeOnFace {
     /// Appends the contacts, where they are now. False, and nothing, if they are not or may not be all of the region.
     pub fn push(&self, pair: &Pair<'_>, near: &CFace, within: f64, scope: &Scope, out: &mut Vec<RegionPoint>) -> bool {
         let Pair { a, placed, .. } = *pair;
-        let Some(faces) = FacePair::new(pair, self.faces, near.normal_w, scope).filter(|_| !scope.wide) else {
+        if scope.wide {
             return false;
-        };
+        }
+        let Some(faces) = FacePair::new(pair, self.faces, near.normal_w, scope) else { return false };
         let ends = self.ends.map(|v| placed.point(a.vertex(v)));
         let [foot, other] = ends.map(|p| faces.foot(p));
         let along = other - foot;
