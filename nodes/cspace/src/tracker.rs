@@ -286,7 +286,8 @@ impl PairState {
         near
     }
 
-    /// The part of the step that only deep or doubtful contacts need: is another plane nearer, is `x` free after all?
+    /// The part of the step that only deep or doubtful contacts need: is another plane nearer, is `x` free after all? If one is nearer,
+    /// it may be beside Near's facet: the walk compares C-faces, and where ties divide a facet none of them speaks for it.
     #[cold]
     fn examine(
         &mut self,
@@ -296,18 +297,33 @@ impl PairState {
         reseeded: &mut bool,
         planes: &mut u32,
     ) -> (Found, bool) {
-        // The walk compares C-faces; where ties divide a facet among several, none of them speaks for it.
         let mut near = near;
         for _ in 0..MAX_RIVALS {
-            match placed.beyond_ties(&near, planes) {
-                Some(found) => near = found,
-                None => break,
+            let (found, divergent) = self.look_farther(placed, near, scratch, reseeded, planes);
+            if !divergent {
+                return (found, false);
+            }
+            match placed.beyond_ties(&found, planes) {
+                Some(beside) => near = beside,
+                None => return (found, true),
+            }
+            if near.face.distance > 0.0 {
+                self.rival = None;
+                return (near, false);
             }
         }
-        if near.face.distance > 0.0 {
-            self.rival = None;
-            return (near, false);
-        }
+        (near, true)
+    }
+
+    /// Near, or a plane that proves `x` free; and whether another plane is nearer than Near, or may be.
+    fn look_farther(
+        &mut self,
+        placed: &Placed<'_>,
+        near: Found,
+        scratch: &mut AuditScratch,
+        reseeded: &mut bool,
+        planes: &mut u32,
+    ) -> (Found, bool) {
         // The rival is tracked like Near; it stops being one when it is no nearer.
         let mut best = near;
         if let Some(rival) = self.rival {
