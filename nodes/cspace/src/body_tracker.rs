@@ -1,7 +1,7 @@
 use crate::audit::AuditScratch;
 use crate::bvh::{Aabb, Bvh};
+use crate::pair_state::PairState;
 use crate::placed::{At, Placed};
-use crate::tracker::PairState;
 use crate::{Body, Tracked, World};
 use spatial::{DVec3, Pose};
 use std::sync::Arc;
