@@ -91,15 +91,16 @@ impl PairState {
         let near_last = travel2 < self.travel2 && self.rival.is_none();
         let sure = near_last && chord2 < self.chord2;
         let steady = sure || near_last && chord2 < self.known2 && self.may_hold(&placed);
-        let stays = if steady { placed.stay(self.near, sure, self.tan_half) } else { None };
-        if let Some((near, inside)) = stays
-            && (near.distance > 0.0 || self.certificate.proves(&placed, &near, inside))
-        {
-            return Tracked::quick(near);
+        let mut unproven = None;
+        if steady && let Some((near, inside)) = placed.stay(self.near, sure, self.tan_half) {
+            if near.distance > 0.0 || self.certificate.proves(&placed, &near, inside) {
+                return Tracked::quick(near);
+            }
+            unproven = Some((near, inside));
         }
         if steady
             && self.stayed
-            && let Some(tracked) = self.second_look(&placed, sure, stays)
+            && let Some(tracked) = self.second_look(&placed, sure, unproven)
         {
             return tracked;
         }
@@ -108,10 +109,10 @@ impl PairState {
 
     /// Near, where a closer look at its neighbours and at the fold along its side settle what a quick step left open.
     #[inline(never)]
-    fn second_look(&self, placed: &Placed<'_>, sure: bool, stays: Option<(CFace, f64)>) -> Option<Tracked> {
+    fn second_look(&self, placed: &Placed<'_>, sure: bool, unproven: Option<(CFace, f64)>) -> Option<Tracked> {
         let mut planes = 1;
-        let (near, inside) = match stays {
-            Some(unproven) => unproven,
+        let (near, inside) = match unproven {
+            Some(stays) => stays,
             None => {
                 let (near, inside) = placed.stay_among(self.near, sure, &mut planes)?;
                 if near.distance > 0.0 || self.certificate.proves(placed, &near, inside) {
