@@ -107,16 +107,21 @@ fn a_prism_that_slides_along_another_over_its_edges_feels_them_all_at_once() {
     assert!(worst < 1e-7, "{worst} J from nowhere, of {most} J");
 }
 
+/// The same of a hull of many small faces that rolls over a lying cylinder.
+fn created_on_cylinder(gains: &Gains, seed: u64) -> (f64, f64) {
+    let mut rng = random::rng(seed);
+    let mut u = |most: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(-most..most)));
+    let points: Vec<DVec3> = (0..120).map(|_| u(1.0).normalize() * 0.1).collect();
+    let w = world(random::hull(&points), vec![lying_cylinder()]);
+    let (turn, roll) = (DQuat::from_scaled_axis(u(2.0)), u(0.2));
+    let path = |s: f64| Pose::new(mm(-4.0 + 8.0 * s, 8.0 * s, 97.0), DQuat::from_scaled_axis(roll * s) * turn);
+    created_with(gains, &w, &path, 1500)
+}
+
 #[test]
 fn a_round_part_whose_small_faces_lie_along_an_edge_keeps_both_their_ends_in_view() {
     for seed in [20, 22, 59] {
-        let mut rng = random::rng(seed);
-        let mut u = |most: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(-most..most)));
-        let points: Vec<DVec3> = (0..120).map(|_| u(1.0).normalize() * 0.1).collect();
-        let w = world(random::hull(&points), vec![lying_cylinder()]);
-        let (turn, roll) = (DQuat::from_scaled_axis(u(2.0)), u(0.2));
-        let path = |s: f64| Pose::new(mm(-4.0 + 8.0 * s, 8.0 * s, 97.0), DQuat::from_scaled_axis(roll * s) * turn);
-        let (worst, most) = created(&w, &path, 1500);
+        let (worst, most) = created_on_cylinder(&Gains { proxy_speed: f64::INFINITY, ..Gains::default() }, seed);
         assert!(most > 1e-3, "{seed}: in contact ({most} J)");
         assert!(worst < 1e-7, "{seed}: {worst} J from nowhere, of {most} J");
     }
@@ -212,13 +217,7 @@ fn friction_of_a_peg_that_leans_in_a_hole_only_takes() {
 fn friction_follows_a_round_part_from_edge_to_edge_and_only_takes() {
     let gains = Gains { friction_static: 0.4, friction_kinetic: 0.4, proxy_speed: f64::INFINITY, ..Gains::default() };
     for seed in [20, 22, 59] {
-        let mut rng = random::rng(seed);
-        let mut u = |most: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(-most..most)));
-        let points: Vec<DVec3> = (0..120).map(|_| u(1.0).normalize() * 0.1).collect();
-        let w = world(random::hull(&points), vec![lying_cylinder()]);
-        let (turn, roll) = (DQuat::from_scaled_axis(u(2.0)), u(0.2));
-        let path = |s: f64| Pose::new(mm(-4.0 + 8.0 * s, 8.0 * s, 97.0), DQuat::from_scaled_axis(roll * s) * turn);
-        let (worst, most) = created_with(&gains, &w, &path, 1500);
+        let (worst, most) = created_on_cylinder(&gains, seed);
         assert!(most > 1e-3, "{seed}: in contact ({most} J)");
         assert!(worst < 2e-8, "{seed}: {worst} J from nowhere, of {most} J");
     }
