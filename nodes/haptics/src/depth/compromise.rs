@@ -7,7 +7,9 @@ use spatial::{DMat3, DVec3};
 /// How much more the square of a violation weighs than the square of the way.
 const WEIGHT: f64 = 100.0;
 /// Rounds of Newton's method, which needs one for each set of violated rows that it comes by.
-const ROUNDS: usize = 16;
+const ROUNDS: usize = 32;
+/// How often a step that leads too far is halved at most.
+const HALVINGS: usize = 32;
 
 /// What the rows agree on best.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +29,11 @@ impl Compromise {
             let mut pull = Pull::at(rows, next);
             // The same rows ask for the same place again.
             let mut is_last = pull.violated == there.violated && rows.len() <= 64;
-            if pull.cost > there.cost {
+            // Each round must come nearer: else the rounds may go in circles.
+            for _ in 0..HALVINGS {
+                if !(pull.cost > there.cost) {
+                    break;
+                }
                 next = next.midpoint(least);
                 pull = Pull::at(rows, next);
                 is_last = false;
@@ -89,6 +95,7 @@ fn is_equal(r: &Row<3>, s: &Row<3>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::{RngExt, SeedableRng};
 
     fn row(normal: DVec3, offset: f64) -> Row<3> {
         Row { normal: normal.to_array(), offset, equality: false }
@@ -110,6 +117,21 @@ mod tests {
         let pushes = [0, 1, 3].map(|i| found.multiplier(&rows[i]));
         assert!((pushes[0] - pushes[1] - found.z.x).abs() < 1e-9 && pushes.iter().all(|p| *p > 0.0), "{pushes:?}");
         assert_eq!(found.multiplier(&rows[4]), 0.0);
+    }
+
+    #[test]
+    fn the_search_does_not_go_in_circles() {
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(5);
+        for i in 0..3000 {
+            let mut number = |least: f64| rng.random_range(least..1.0);
+            let rows: Vec<Row<3>> = (0..1 + i % 7)
+                .map(|_| row(DVec3::new(number(-1.0), number(-1.0), number(-1.0)).normalize(), 1e-3 * number(-0.5)))
+                .collect();
+            let found = Compromise::of(&rows);
+            // Where it is least it has no slope.
+            let slope = rows.iter().map(|r| DVec3::from_array(r.normal) * found.multiplier(r)).sum::<DVec3>();
+            assert!(slope.distance(found.z) < 1e-13, "{rows:?}: {found:?}");
+        }
     }
 
     #[test]
