@@ -75,6 +75,8 @@ pub(crate) struct Scp {
     lever: f64,
     /// It is a compromise: the parts are wedged.
     wedged: bool,
+    /// Which of the planes the last compromise violates.
+    yielding: u64,
     /// Looks around left in this tick.
     looks: usize,
     /// Size of the largest part, metres.
@@ -101,6 +103,7 @@ impl Scp {
             held: None,
             lever: solids.lever(),
             wedged: false,
+            yielding: 0,
             looks: 0,
             size,
         }
@@ -110,6 +113,7 @@ impl Scp {
         self.last = None;
         self.held = None;
         self.wedged = false;
+        self.yielding = 0;
         self.hints.fill(None);
         self.around.reset();
     }

@@ -51,6 +51,8 @@ impl Scp {
         if !found {
             self.take_nearest();
             self.touch_unfelt(solids, &Placed::new(hip));
+            self.rows.clear();
+            self.rows.extend(self.touches.iter().map(|t| row(&t.plane)));
             self.give_way(FAR * self.depth_of_touches());
         }
         found
@@ -62,11 +64,9 @@ impl Scp {
         self.touches.extend_from_slice(&self.nearest);
     }
 
-    /// The SCP becomes what the planes agree on best, no farther away than `limit`, metres.
+    /// The SCP becomes what the planes, whose rows are known, agree on best, no farther away than `limit`, metres.
     pub(super) fn give_way(&mut self, limit: f64) {
-        self.rows.clear();
-        self.rows.extend(self.touches.iter().map(|t| row(&t.plane)));
-        let found = Compromise::of(&self.rows);
+        let found = Compromise::of(&self.rows, &mut self.yielding);
         self.shift = found.z.clamp_length_max(limit);
         for (t, r) in self.touches.iter_mut().zip(&self.rows) {
             // What opposite planes ask for beyond their depths is the weight's, and no share of the force.
