@@ -349,7 +349,7 @@ fn plane_of_face_b(a: &Polyhedron, b: &Polyhedron, placed: &Placed, face_b: Face
 }
 
 /// The foot of `p` on the face's plane, drawn into the face side by side: near its nearest point, and inside.
-fn nearest_in_face(body: &Polyhedron, face: FaceId, p: DVec3) -> DVec3 {
+pub(crate) fn nearest_in_face(body: &Polyhedron, face: FaceId, p: DVec3) -> DVec3 {
     let plane = body.face_plane(face);
     let foot = p - plane.normal * plane.signed_distance(p);
     if body.face_sides(face).iter().all(|side| side.signed_distance(foot) <= 0.0) {

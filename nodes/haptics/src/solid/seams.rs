@@ -5,8 +5,11 @@ use cspace::{EdgeId, FaceId, Plane, Polyhedron, VertexId};
 use spatial::DVec3;
 use std::sync::Arc;
 
+mod margins;
 #[cfg(test)]
 mod tests;
+
+pub(crate) use margins::Margin;
 
 /// Points this close to a piece's surface (part of the largest piece) count as on it.
 const ON_SURFACE: f64 = 1e-7;

@@ -101,7 +101,7 @@ impl Scp {
     /// Near the SCP these planes bound what is free, so that the projection on them is the nearest touching configuration
     /// around. That no edge contact elsewhere has become nearer is taken for granted within [`ROOM`].
     pub(super) fn hold(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> Option<f64> {
-        let held = self.held.take().filter(|h| h.wanted == Wanted::Scp && h.reaches(hip, self.lever))?;
+        let held = self.held.take().filter(|h| h.wanted == Wanted::Scp && h.reaches(hip, self.way.lever))?;
         if self.wedged {
             self.take_nearest();
         }
@@ -125,15 +125,15 @@ impl Scp {
             return None;
         }
         let there = placed.shifted(shift);
-        let is_apart = |s: &Sensed| {
+        let mut is_apart = |s: &Sensed| {
             let left = s.near.distance + s.near.normal_w.dot(shift);
             left > 4.0 * tie_of(solids, s.part)
                 || self.touches.iter().any(|t| is_of(t, s))
                 || left < -FREED
-                    && !Pair::of(solids, s, placed).is_felt(&s.near, Covered::Unfelt)
+                    && !self.is_felt(solids, s, placed, Covered::Unfelt)
                     && is_parted(&Pair::of(solids, s, &there), &self.touches, &self.projection)
         };
-        if !pairs.iter().all(is_apart) || !self.takes_place(solids, &there) {
+        if !pairs.iter().all(&mut is_apart) || !self.takes_place(solids, hip, &there) {
             return None;
         }
         self.held = Some(held);
@@ -143,13 +143,15 @@ impl Scp {
     /// The depth if the planes that told it at the last tick still do: each pair with a plane that is felt has that plane, or the one
     /// behind its seam, and all others are free where these lead.
     pub(super) fn hold_depth(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> Option<f64> {
-        let held = self.held.take().filter(|h| h.reaches(hip, self.lever))?;
+        let held = self.held.take().filter(|h| h.reaches(hip, self.way.lever))?;
         let Wanted::Depth { felt } = held.wanted else { return None };
         self.rows.clear();
-        for (i, t) in self.touches.iter_mut().enumerate() {
+        let Self { touches, lasting, pieces, gone, way, .. } = self;
+        for (i, t) in touches.iter_mut().enumerate() {
             let s = pairs.iter().find(|s| is_of(t, s))?;
             let pair = Pair::of(solids, s, placed);
-            if pair.is_felt(&s.near, Covered::Unfelt) {
+            let lasting = &mut lasting[pair.part * *pieces + pair.piece];
+            if lasting.is_felt(&s.near, Covered::Unfelt, (*gone, way.lever), || pair) {
                 t.plane = s.near;
             } else if i < felt {
                 return None;
@@ -187,16 +189,18 @@ impl Scp {
     /// The same planes at this pose; none if one of them is no longer the felt one.
     fn take_along(&mut self, solids: &Solids, pairs: &[Sensed], placed: &Placed) -> Option<()> {
         self.rows.clear();
-        for t in &mut self.touches {
+        let Self { touches, lasting, pieces, gone, way, .. } = self;
+        for t in touches {
             let s = pairs.iter().find(|s| is_of(t, s))?;
-            let pair = Pair::of(solids, s, placed);
             // A nearest plane that is felt is the one to hold.
             let is_near = s.near.contact == t.plane.contact;
             let covered = if is_near { Covered::Felt } else { Covered::Unfelt };
-            if pair.is_felt(&s.near, covered) != is_near {
+            let lasting = &mut lasting[s.part as usize * *pieces + s.piece as usize];
+            let pair = || Pair::of(solids, s, placed);
+            if lasting.is_felt(&s.near, covered, (*gone, way.lever), pair) != is_near {
                 return None;
             }
-            t.plane = if is_near { s.near } else { pair.applicable_plane(t.plane.contact)? };
+            t.plane = if is_near { s.near } else { pair().applicable_plane(t.plane.contact)? };
             (t.first, t.end, t.beside, t.tie) = (0, 0, [0; 2], tie_of(solids, t.part));
             self.rows.push(row(&t.plane));
         }

@@ -1,14 +1,16 @@
 //! The surface contact point: the nearest touching configuration to the hand's at its orientation, one or more obstacles.
 
 mod hold;
+mod lasting;
 mod refine;
 mod unfelt;
 
 use crate::projection::{Projection, Row};
-use crate::region::TIED;
-use crate::solid::{Covered, OnePlane, Pair, Placed, SAME, Sense, Sensed, Solids, facing_point};
+use crate::region::{Gone, TIED, Way};
+use crate::solid::{Covered, OnePlane, Pair, Placed, SAME, Sense, Sensed, Solids};
 use cspace::{BasicContact, CFace};
 use hold::Held;
+use lasting::Lasting;
 use spatial::{DVec3, Pose};
 use unfelt::{Unfelt, is_parted};
 
@@ -65,14 +67,19 @@ pub(crate) struct Scp {
     shift: DVec3,
     /// For each pair the plane last felt where Near is a seam.
     hints: Vec<Option<BasicContact>>,
+    /// For each pair what holds while the part goes on.
+    lasting: Vec<Lasting>,
     pieces: usize,
     /// The tracker that looks around from the SCP.
     around: Sense,
     /// The last SCP.
     last: Option<DVec3>,
     held: Option<Held>,
-    /// Farthest point of A from its origin, metres.
-    lever: f64,
+    /// The way of the hand, and where it is.
+    way: Way,
+    gone: Gone,
+    /// The way of the SCP.
+    scp_way: Way,
     /// It is a compromise: the parts are wedged.
     wedged: bool,
     /// Which of the planes the last compromise violates.
@@ -97,11 +104,14 @@ impl Scp {
             projection: Projection::new(),
             shift: DVec3::ZERO,
             hints: vec![None; pairs],
+            lasting: vec![Lasting::NOTHING; pairs],
             pieces: world.fixed.len(),
             around: Sense::new(world.clone(), BESIDE * size),
             last: None,
             held: None,
-            lever: solids.lever(),
+            way: Way::new(solids.lever()),
+            gone: Gone::NEVER,
+            scp_way: Way::new(solids.lever()),
             wedged: false,
             yielding: 0,
             looks: 0,
@@ -115,6 +125,7 @@ impl Scp {
         self.wedged = false;
         self.yielding = 0;
         self.hints.fill(None);
+        self.lasting.fill(Lasting::NOTHING);
         self.around.reset();
     }
 
@@ -126,6 +137,7 @@ impl Scp {
     /// The penetration of the hand's pose, metres, `>= 0`: the largest over the planes that count.
     pub fn depth(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
         self.last = None;
+        self.gone = self.way.go(hip.translation, hip.rotation);
         self.hold_depth(solids, pairs, hip, placed).unwrap_or_else(|| {
             let depth = self.project(solids, pairs, placed, true);
             self.begin_to_hold_depth(solids, pairs, hip, placed, depth);
@@ -135,6 +147,7 @@ impl Scp {
 
     /// Finds the SCP and the planes that hold it, in `touches`; returns the depth as [`Scp::depth`] does.
     pub fn find(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
+        self.gone = self.way.go(hip.translation, hip.rotation);
         let depth = match self.hold(solids, pairs, hip, placed) {
             Some(depth) => depth,
             None => self.search(solids, pairs, hip, placed),
@@ -206,7 +219,7 @@ impl Scp {
         }
         self.choose(solids, placed, depth);
         self.take_projection();
-        self.wedged = !self.is_plain(solids, placed, depth) && !self.refine(solids, hip, depth);
+        self.wedged = !self.is_plain(solids, hip, placed, depth) && !self.refine(solids, hip, depth);
         if self.wedged {
             let depth = self.depth_of_touches();
             self.hold_wedged(pairs, hip, depth);
@@ -230,7 +243,7 @@ impl Scp {
 
     /// Whether the SCP is known to touch and to be free without a look around: its planes' features face each other there, and
     /// all pairs that it could reach were among the constraints.
-    fn is_plain(&self, solids: &Solids, placed: &Placed, depth: f64) -> bool {
+    fn is_plain(&mut self, solids: &Solids, hip: &Pose, placed: &Placed, depth: f64) -> bool {
         let way = self.shift.length();
         if self.projection.contradictions > 0 || way > SCP_MARGIN || way > 2.0 * depth {
             return false;
@@ -242,22 +255,27 @@ impl Scp {
                 return one.plane.distance < 0.0;
             }
         }
-        self.takes_place(solids, &placed.shifted(self.shift))
+        self.takes_place(solids, hip, &placed.shifted(self.shift))
     }
 
     /// Whether the planes that push have contacts that take place at the SCP.
-    fn takes_place(&self, solids: &Solids, scp: &Placed) -> bool {
-        let touches_there = |part: u32, piece: u32, plane: &CFace| {
-            facing_point(&Pair::new(solids, part, piece, scp), &CFace { distance: 0.0, ..*plane }, FREED).is_some()
+    fn takes_place(&mut self, solids: &Solids, hip: &Pose, scp: &Placed) -> bool {
+        let Self { touches, lasting, pieces, scp_way, .. } = self;
+        let known = (scp_way.go(scp.x, hip.rotation), scp_way.lever);
+        let mut touches_there = |part: u32, piece: u32, contact: BasicContact, plane: &CFace| {
+            let lasting = &mut lasting[part as usize * *pieces + piece as usize];
+            lasting.faces(contact, FREED, known, || {
+                (Pair::new(solids, part, piece, scp), CFace { contact, distance: 0.0, ..*plane })
+            })
         };
         // Of the pieces that one wall is cut into, any may carry the force, and any other be touched.
         let same_wall = |t: &Touch, u: &Touch| OnePlane::EXACT.holds_for(&t.plane, &u.plane);
-        self.touches.iter().filter(|t| t.push > 0.0).all(|t| {
-            touches_there(t.part, t.piece, &t.plane)
-                || self.touches.iter().any(|u| same_wall(t, u) && touches_there(u.part, u.piece, &u.plane))
+        touches.iter().filter(|t| t.push > 0.0).all(|t| {
+            touches_there(t.part, t.piece, t.plane.contact, &t.plane)
+                || touches.iter().any(|u| same_wall(t, u) && touches_there(u.part, u.piece, u.plane.contact, &u.plane))
                 || solids
                     .flush_contacts(t.part, t.piece, t.plane.contact)
-                    .any(|(part, piece, contact)| touches_there(part, piece, &CFace { contact, ..t.plane }))
+                    .any(|(part, piece, contact)| touches_there(part, piece, contact, &t.plane))
         })
     }
 
@@ -276,7 +294,7 @@ impl Scp {
             if s.near.distance > 2.0 * deepest {
                 continue;
             }
-            if Pair::of(solids, s, placed).is_felt(&s.near, Covered::Unfelt) {
+            if self.is_felt(solids, s, placed, Covered::Unfelt) {
                 self.touch(solids, s.part, s.piece, s.near);
             } else if s.near.distance < 0.0 || !depth_alone {
                 self.unfelt.push(Unfelt::new(s));
@@ -291,6 +309,13 @@ impl Scp {
             self.add_beside(solids, placed);
         }
         self.depth_of_touches()
+    }
+
+    /// Whether the pair's nearest plane is felt: see [`Pair::is_felt`].
+    fn is_felt(&mut self, solids: &Solids, s: &Sensed, placed: &Placed, covered: Covered) -> bool {
+        let known = (self.gone, self.way.lever);
+        let lasting = &mut self.lasting[s.part as usize * self.pieces + s.piece as usize];
+        lasting.is_felt(&s.near, covered, known, || Pair::of(solids, s, placed))
     }
 
     fn depth_of_touches(&self) -> f64 {
