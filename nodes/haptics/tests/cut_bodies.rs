@@ -8,8 +8,8 @@ use haptics::{Gains, LawKind, RenderLaw, Renderer};
 use rand::RngExt;
 use spatial::{DQuat, DVec3, Pose};
 use std::sync::Arc;
-use support::cuboid;
 use support::random::{Rng, hull, placed, rng};
+use support::{cuboid, wedge};
 
 const LAWS: [LawKind; 4] = [LawKind::Paper, LawKind::Pstar, LawKind::Blended, LawKind::Proxy];
 /// Worlds of each kind, and ticks in each.
@@ -250,6 +250,47 @@ fn two_edges_that_cross_beside_a_joint_are_felt_on_both_pieces() {
         felt += u32::from(expected.force.y.abs() > 0.02);
     }
     assert!(felt > 50, "{felt}");
+}
+
+/// An edge of the part slides lengthwise over a ridge, and over the cut that goes askew through it: the cut's own edges, which cross the
+/// ridge there at other angles, hold nothing.
+#[test]
+fn an_edge_led_over_a_ridge_does_not_catch_at_its_own_joint() {
+    let gains = Gains { law: LawKind::Proxy, ..Gains::default() };
+    let mut felt = 0;
+    for seed in 1..=4 * SEEDS {
+        let mut rng = rng(seed);
+        let mut any = || DVec3::from_array([0; 3].map(|_| rng.random_range(-1.0..1.0)));
+        let part = hull(&(0..9).map(|_| any().normalize() * 0.012).collect::<Vec<_>>());
+        let length = |e| part.edge(e).vertices.map(|v| part.vertex(v));
+        let longest = part.edges().max_by(|e, f| {
+            let [a, b] = [*e, *f].map(length).map(|[p, q]| p.distance(q));
+            a.total_cmp(&b)
+        });
+        let edge = longest.expect("a hull has edges");
+        let ([from, to], along) = (length(edge), part.edge_direction(edge));
+        let out = part.edge(edge).faces.map(|f| part.face_plane(f).normal).into_iter().sum::<DVec3>().normalize();
+        let across = (along * along.dot(any()).signum() * 0.3 + any()).normalize();
+        let at = across.dot(from.midpoint(to));
+        let pieces = vec![behind(&part, across, at), behind(&part, -across, -at)];
+        let down = DQuat::from_rotation_arc(out, DVec3::NEG_Z);
+        let yaw = (down * along).y.atan2((down * along).x) + 0.6 * any().x;
+        let tilt = DQuat::from_scaled_axis(0.4 * any());
+        let rotation = (tilt * DQuat::from_rotation_z(-yaw) * down).normalize();
+        let aside = any() * 3e-4;
+        let ridge = || vec![wedge(0.9, 0.05, 0.1)];
+        let mut renderers = [vec![part.clone()], pieces].map(|moving| Renderer::new(world(moving, ridge())));
+        for tick in 0..600 {
+            let place = from.lerp(to, 0.35 + 5e-4 * f64::from(tick));
+            let press = 6e-4 * (f64::from(tick) * 0.02).min(1.0);
+            let hand = Pose::new(aside - DVec3::Z * (aside.z + press) - rotation * place, rotation);
+            let [expected, found] = renderers.each_mut().map(|r| r.render(&hand, &gains, 1e-3).wrench);
+            let apart = (found.force - expected.force).length() + (found.torque - expected.torque).length();
+            assert!(apart < 1e-6, "seed {seed}, tick {tick}: {found:?}, not {expected:?}");
+            felt += u32::from(expected.force.length() > 0.1);
+        }
+    }
+    assert!(felt > 10_000, "{felt}");
 }
 
 /// Odd parts cut in two anywhere, close to a tip as well: where an edge of the part crosses the cut is no corner of it, and the cut is
