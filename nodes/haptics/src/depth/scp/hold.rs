@@ -136,6 +136,15 @@ impl Scp {
         if !pairs.iter().all(&mut is_apart) || !self.takes_place(solids, hip, &there) {
             return None;
         }
+        // It does not tell the depth, which is that where the hand is.
+        let is_felt_there = |t: &Touch| {
+            let plane = CFace { distance: t.plane.distance + t.plane.normal_w.dot(shift), ..t.plane };
+            let is_deepest = self.touches.iter().all(|u| u.felt_there || u.plane.distance > t.plane.distance);
+            !is_deepest && Pair::new(solids, t.part, t.piece, &there).is_felt(&plane, Covered::Felt)
+        };
+        if !self.touches.iter().filter(|t| t.felt_there).all(is_felt_there) {
+            return None;
+        }
         self.held = Some(held);
         Some(depth)
     }
@@ -197,7 +206,10 @@ impl Scp {
             let covered = if is_near { Covered::Felt } else { Covered::Unfelt };
             let lasting = &mut lasting[s.part as usize * *pieces + s.piece as usize];
             let pair = || Pair::of(solids, s, placed);
-            if lasting.is_felt(&s.near, covered, (*gone, way.lever), pair) != is_near {
+            let is_felt = lasting.is_felt(&s.near, covered, (*gone, way.lever), pair);
+            // A plane that was found at the SCP may be felt there alone.
+            t.felt_there = is_near && !is_felt;
+            if is_felt != is_near && !(t.felt_there && t.found_there) {
                 return None;
             }
             t.plane = if is_near { s.near } else { pair().applicable_plane(t.plane.contact)? };

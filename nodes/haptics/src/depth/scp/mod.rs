@@ -41,6 +41,10 @@ pub(crate) struct Touch {
     pub left: f64,
     /// Share of the force that the plane carries: shift = sum push_i normal_i, metres.
     pub push: f64,
+    /// It was found where the SCP is.
+    pub found_there: bool,
+    /// It is felt where the SCP is, and not where the hand is.
+    pub felt_there: bool,
 }
 
 impl Touch {
@@ -333,6 +337,8 @@ impl Scp {
             tie: tie_of(solids, part),
             left: 0.0,
             push: 0.0,
+            found_there: false,
+            felt_there: false,
         });
         self.rows.push(row(&plane));
     }

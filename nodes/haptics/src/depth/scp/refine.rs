@@ -138,10 +138,14 @@ impl Scp {
                     changed |=
                         self.touches[i].plane.contact != plane.contact || self.rows[i].offset == f64::NEG_INFINITY;
                     self.touches[i].plane = plane;
+                    self.touches[i].found_there = true;
                     self.rows[i] = row(&plane);
                 }
                 (None, Some(plane)) if self.touches.len() < self.touches.capacity() => {
                     self.touch(solids, s.part, s.piece, plane);
+                    if let Some(t) = self.touches.last_mut() {
+                        t.found_there = true;
+                    }
                     changed = true;
                 }
                 (Some(i), None) if loose => {
