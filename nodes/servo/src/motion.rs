@@ -29,8 +29,8 @@ impl Motion {
             moved.linear = sample.pose.translation - pose.translation;
             moved.angular = pose.rotation_to(&sample.pose);
             // Stamps of one device; never shorter than half a tick, whatever they say.
-            let elapsed = (sample.stamp.0.saturating_sub(stamp.0) as f64 * 1e-9).max(0.5 * dt);
-            self.rate = Twist { linear: moved.linear / elapsed, angular: moved.angular / elapsed };
+            let per_second = 1.0 / (sample.stamp.0.saturating_sub(stamp.0) as f64 * 1e-9).max(0.5 * dt);
+            self.rate = Twist { linear: moved.linear * per_second, angular: moved.angular * per_second };
         }
         let share = low_pass_share(self.cutoff, dt);
         self.filtered.linear += (self.rate.linear - self.filtered.linear) * share;

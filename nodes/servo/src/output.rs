@@ -130,7 +130,7 @@ impl Output {
         self.share = self.ramp * self.relief;
         let stored = returnable(self.share);
         // Only the ramp is asked for: what the relief gives back must be paid for.
-        let ramped = stored - returnable(last_ramp * self.relief);
+        let ramped = if self.ramp == last_ramp { 0.0 } else { stored - returnable(last_ramp * self.relief) };
         let stiffness = if stored > 0.0 {
             let turn = match gains.law {
                 LawKind::Proxy => gains.rotation_stiffness,

@@ -20,12 +20,12 @@ pub struct Limiter {
 impl Limiter {
     /// One tick of `dt` seconds. What is asked must be finite.
     pub fn step(&mut self, asked: &Wrench, gains: &Gains, dt: f64) -> Limited {
-        let lengths = [asked.force.length(), asked.torque.length()];
-        let saturated = lengths[0] > gains.max_force || lengths[1] > gains.max_torque;
-        let goal = Wrench::new(
-            asked.force * limit_factor(lengths[0], gains.max_force),
-            asked.torque * limit_factor(lengths[1], gains.max_torque),
-        );
+        let factors = [
+            limit_factor(asked.force.length_squared(), gains.max_force),
+            limit_factor(asked.torque.length_squared(), gains.max_torque),
+        ];
+        let saturated = factors.iter().any(|f| *f < 1.0);
+        let goal = Wrench::new(asked.force * factors[0], asked.torque * factors[1]);
         self.last.force += shortened(goal.force - self.last.force, gains.max_force_rate * dt);
         self.last.torque += shortened(goal.torque - self.last.torque, gains.max_torque_rate * dt);
         // When a limit was lowered, the way down is not slowed by the rate.
@@ -47,12 +47,14 @@ pub fn clamped(wrench: &Wrench, gains: &Gains) -> Wrench {
 
 /// `v` shortened to at most `max`.
 fn shortened(v: DVec3, max: f64) -> DVec3 {
-    v * limit_factor(v.length(), max)
+    v * limit_factor(v.length_squared(), max)
 }
 
-/// The factor, 1 or less, that brings `length` down to `max`.
-pub(crate) fn limit_factor(length: f64, max: f64) -> f64 {
-    if length > max { max / length } else { 1.0 }
+/// The factor, 1 or less, that brings the length of which this is the square down to `max`.
+#[inline]
+pub(crate) fn limit_factor(square: f64, max: f64) -> f64 {
+    // No root is taken of what is short enough.
+    if square > max * max { max / square.sqrt() } else { 1.0 }
 }
 
 #[cfg(test)]

@@ -51,8 +51,9 @@ impl Coupling {
         }
         // Another law has its proxy elsewhere: that is no motion either, and the hand goes on as it did.
         let share = if law.changed { 0.0 } else { low_pass_share(cutoff, dt) };
-        self.rate.0 += ((stretch.0 - last.0) / dt - self.rate.0) * share;
-        self.rate.1 += ((stretch.1 - last.1) / dt - self.rate.1) * share;
+        let frequency = 1.0 / dt;
+        self.rate.0 += ((stretch.0 - last.0) * frequency - self.rate.0) * share;
+        self.rate.1 += ((stretch.1 - last.1) * frequency - self.rate.1) * share;
         if self.rate.0.length_squared() < TINY && stretch.0 == last.0 {
             self.rate.0 = DVec3::ZERO;
         }

@@ -117,7 +117,8 @@ impl Passivity {
         dt: f64,
         limits: &PassivityLimits,
     ) -> Wrench {
-        let (v, w) = (moved.linear / dt, moved.angular / dt);
+        let rate = 1.0 / dt;
+        let (v, w) = (moved.linear * rate, moved.angular * rate);
         let lever2 = limits.lever * limits.lever;
         let square = v.length_squared() + lever2 * w.length_squared();
         let paying = if square > 0.0 { self.owed() / (dt * square) } else { 0.0 };
@@ -194,11 +195,11 @@ fn work(wrench: &Wrench, moved: &Displacement) -> f64 {
 /// force over `scale` motion.
 #[must_use]
 pub fn returnable_energy(energy: f64, wrench: &Wrench, share: f64, gains: &Gains, scale: f64) -> f64 {
-    let force = wrench.force.length();
-    let of_force = (0.5 * force * force / gains.stiffness).min(energy);
+    let force = wrench.force.length_squared();
+    let of_force = (0.5 * force / gains.stiffness).min(energy);
     let cut = |r: f64| r * (2.0 - r);
-    let r_force = limit_factor(share * force, gains.max_force);
-    let r_torque = limit_factor(share * wrench.torque.length(), gains.max_torque);
+    let r_force = limit_factor(share * share * force, gains.max_force);
+    let r_torque = limit_factor(share * share * wrench.torque.length_squared(), gains.max_torque);
     share * (of_force * cut(r_force) / scale + (energy - of_force) * cut(r_torque))
 }
 

@@ -39,6 +39,8 @@ pub(crate) struct DepthLaw {
 
 /// Blunter contacts are none to tell of.
 const BLUNT: f32 = 0.005;
+/// Of the size that a tie tells.
+const PER_TIE: f64 = 1.0 / TIED;
 /// Most contact points held at once.
 const ROOM: usize = 256;
 
@@ -225,7 +227,9 @@ impl DepthLaw {
                 }
             }
         };
-        for (j, u) in scp.touches.iter().enumerate().filter(|(j, u)| *j == i || is_equal(&t, u)) {
+        let one_region = OnePlane::REGION.of_size(t.tie * PER_TIE);
+        let is_equal = |u: &Touch| one_region.holds_for(&t.plane, &u.plane);
+        for (j, u) in scp.touches.iter().enumerate().filter(|(j, u)| *j == i || is_equal(u)) {
             points[u.first..u.end].iter().for_each(&mut add);
             if i == j {
                 points[u.beside[0]..u.beside[1]].iter().for_each(&mut add);
@@ -250,5 +254,5 @@ impl DepthLaw {
 
 /// Whether two planes are one constraint.
 fn is_equal(t: &Touch, u: &Touch) -> bool {
-    OnePlane::REGION.of_size(t.tie / TIED).holds_for(&t.plane, &u.plane)
+    OnePlane::REGION.of_size(t.tie * PER_TIE).holds_for(&t.plane, &u.plane)
 }

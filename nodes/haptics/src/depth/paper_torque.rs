@@ -75,15 +75,15 @@ fn face_rule(hull: &[DVec3], normal: DVec3, force: DVec3, x0: DVec3) -> DVec3 {
 /// two ends if the points lie on a line. Monotone chain (Andrew 1979).
 pub(crate) fn convex_hull(points: &[DVec3], normal: DVec3, hull: &mut Vec<DVec3>) {
     hull.clear();
-    let Some(first) = points.first() else { return };
-    let size = points.iter().map(|p| p.distance(*first)).fold(0.0, f64::max);
+    let [first, others @ ..] = points else { return };
+    let size = others.iter().map(|p| p.distance_squared(*first)).fold(0.0, f64::max).sqrt();
     let same = 1e-8 * size;
     if size <= 1e-12 {
         hull.push(*first);
         return;
     }
-    if points.len() == 2 {
-        hull.extend_from_slice(points);
+    if let [second] = others {
+        hull.extend([*first, *second]);
         return;
     }
     let (u, v) = normal.any_orthonormal_pair();

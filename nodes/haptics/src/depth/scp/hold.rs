@@ -212,7 +212,11 @@ impl Scp {
             if is_felt != is_near && !(t.felt_there && t.found_there) {
                 return None;
             }
-            t.plane = if is_near { s.near } else { pair().applicable_plane(t.plane.contact)? };
+            if is_near {
+                t.plane = s.near;
+            } else {
+                t.plane = pair().applicable_plane(t.plane.contact)?;
+            }
             (t.first, t.end, t.beside, t.tie) = (0, 0, [0; 2], tie_of(solids, t.part));
             self.rows.push(row(&t.plane));
         }
