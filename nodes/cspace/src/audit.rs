@@ -21,6 +21,10 @@ use spatial::DVec3;
 /// Most corners that the polygon on top may have; of a face with more, some are taken.
 const TOP_CORNERS: usize = 8;
 
+/// The part of the disc that a cap takes, and the least cap that is worth it, tangent of half its angle.
+const CAP: f64 = 0.6;
+const LEAST_CAP: f64 = 0.03;
+
 /// Room for the polytope; made once.
 #[derive(Clone)]
 pub(crate) struct AuditScratch {
@@ -153,7 +157,7 @@ pub(crate) fn audit(placed: &Placed<'_>, near: &Found, scratch: &mut AuditScratc
     if !(enough > 0.0) {
         return Verdict::Open;
     }
-    reach(polytope, near, n, e)
+    reach(placed, polytope, near, e)
 }
 
 /// The normal of the plane through the edge of the C-face that passes `x` a little farther than the C-face does.
@@ -163,15 +167,28 @@ fn steepest([from, to]: [DVec3; 2], n: DVec3, e: f64) -> Option<DVec3> {
     (t > 1e-6 && t < 1e6).then(|| (n * (1.0 - t * t) + out * (2.0 * t)) / (1.0 + t * t))
 }
 
-/// How far the proof reaches: outside a cap that is left to the C-face's own extent, the support function's minima
-/// over the directions are at the normals of the polytope's facets, or on the border of the cap.
-fn reach(polytope: &InnerPolytope, near: &Found, n: DVec3, e: f64) -> Verdict {
-    let t = (0.6 * near.inside / e).min(1.5);
-    if !(t > 0.03) {
-        return Verdict::Proven { tan_half_cap: 0.0, slack: -1.0 };
-    }
-    let (cos, sin) = ((1.0 - t * t) / (1.0 + t * t), 2.0 * t / (1.0 + t * t));
-    let border = sin * (near.inside - e * t);
-    let slack = polytope.surface().filter(|(m, _)| m.dot(n) < cos).fold(border, |s, (_, sure)| s.min(sure - e));
-    Verdict::Proven { tan_half_cap: t, slack }
+/// How far the proof reaches: outside a cap that is left to the C-face's own extent, the minima of the polytope's support function
+/// are at its facets' normals, or on the border of the cap.
+///
+/// The cap is as wide as the disc about the SCP allows with some room; very close to a side, as the folded disc does.
+fn reach(placed: &Placed<'_>, polytope: &InnerPolytope, near: &Found, e: f64) -> Verdict {
+    let n = near.face.normal_w;
+    let beyond_cap = |inside: f64| {
+        let t = (CAP * inside / e).min(1.0);
+        if !(t > LEAST_CAP) {
+            return (0.0, -1.0);
+        }
+        let cos = (1.0 - t * t) / (1.0 + t * t);
+        let border = polytope.least_at(n, cos);
+        let outside = polytope.surface().filter(|(m, _)| m.dot(n) <= cos);
+        (t, outside.fold(border, |least, (_, sure)| least.min(sure)) - e)
+    };
+    let (tan_half_cap, slack) = match beyond_cap(near.inside) {
+        (_, slack) if slack < 0.0 && near.settled => beyond_cap(placed.folded_disc(&near.face, near.inside)),
+        flat => flat,
+    };
+    Verdict::Proven { tan_half_cap, slack }
 }
+
+#[cfg(test)]
+mod tests;

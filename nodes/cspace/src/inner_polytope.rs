@@ -38,6 +38,22 @@ pub(crate) struct InnerPolytope {
     span: f64,
 }
 
+/// The unit direction on the arc from `inner` to `outer` that has the cosine `cos >= 0` with `n`, if `inner` has a larger one and
+/// `outer` a smaller one or the same.
+fn between(inner: DVec3, outer: DVec3, n: DVec3, cos: f64) -> Option<DVec3> {
+    let (z, to) = (inner.dot(n), outer.dot(n));
+    if !(z > cos && to <= cos) {
+        return None;
+    }
+    // Where (z + t dz)^2 becomes cos^2 times the square of the chord's length there.
+    let (dz, c2) = (to - z, cos * cos);
+    let apart = c2 * (1.0 - inner.dot(outer));
+    let (a, b, c) = (dz * dz - 2.0 * apart, z * dz + apart, z * z - c2);
+    let root = (b * b - a * c).max(0.0).sqrt();
+    let t = if b < 0.0 { c / (root - b) } else { -(b + root) / a };
+    Some((inner + (outer - inner) * t.clamp(0.0, 1.0)).normalize())
+}
+
 /// Why a polytope cannot grow: it is full, or rounding has torn it.
 pub(crate) struct Stuck;
 
@@ -96,6 +112,33 @@ impl InnerPolytope {
     /// The facets of the surface (without the top): normal and sure distance.
     pub(crate) fn surface(&self) -> impl Iterator<Item = (DVec3, f64)> + '_ {
         self.facets[..self.facet_count].iter().filter(|f| f.alive).map(|f| (f.normal, f.sure))
+    }
+
+    /// The least of the support function's values over the directions that have the cosine `cos >= 0` with `n`, the top's normal, metres.
+    ///
+    /// On that circle it is a chain of arcs of sines, one for each corner whose cone of normals the circle passes: it is least where
+    /// one changes to the next, which is where the circle crosses the arc between two facets' normals, or where such a sine itself is.
+    pub(crate) fn least_at(&self, n: DVec3, cos: f64) -> f64 {
+        let mut least = f64::INFINITY;
+        for f in self.facets[..self.facet_count].iter().filter(|f| f.alive && f.normal.dot(n) <= cos) {
+            for (corner, across) in f.corners.into_iter().zip(f.across) {
+                let inner = if across == TOP { n } else { self.facets[across as usize].normal };
+                if let Some(m) = between(inner, f.normal, n, cos) {
+                    least = least.min(m.dot(self.points[corner as usize]));
+                }
+            }
+        }
+        let sin = (1.0 - cos * cos).max(0.0).sqrt();
+        let points = &self.points[..self.point_count];
+        for p in points {
+            let (up, aside) = (p.dot(n), p.reject_from_normalized(n).normalize_or_zero());
+            // `x` is inside: what the corner itself has there must be positive.
+            if up * cos > sin * p.dot(aside) {
+                let m = n * cos - aside * sin;
+                least = least.min(points.iter().map(|q| m.dot(*q)).fold(f64::NEG_INFINITY, f64::max));
+            }
+        }
+        least - 1e-14 * self.span
     }
 
     /// The facet that is nearest to the origin, if it is not surely `enough` away, metres.
@@ -175,3 +218,6 @@ impl InnerPolytope {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -32,6 +32,8 @@ mod sides;
 mod start;
 mod stay;
 mod support_table;
+#[cfg(test)]
+mod testing;
 mod tracked;
 mod tracker;
 mod walk;
