@@ -9,8 +9,8 @@ use std::sync::Arc;
 /// Most obstacle pieces that one moving part keeps in view at a time.
 pub const MAX_NEAR_PIECES: usize = 4096;
 
-/// Ticks at the present speed for which a pair may be calm.
-const CALM_TICKS: f64 = 16.0;
+/// Ticks at the present speed for which a pair may be calm; for fewer, if it is not for more.
+const CALM_TICKS: [f64; 2] = [16.0, 4.0];
 /// Such times after which it is asked again at the latest.
 const MOST_ASK_AFTER: f64 = 8.0;
 /// The speed that counts at least and at most, in radii of the part a tick.
@@ -37,6 +37,8 @@ struct Seen {
     /// The same, up to which it is known to be calm, or from which on that is worth asking.
     calm_until: f64,
     ask_calm: f64,
+    /// Near is known to stay applicable while the pair is calm.
+    stays_applicable: bool,
     /// After how many times that long, next.
     ask_after: f64,
 }
@@ -159,7 +161,11 @@ impl BodyTracker {
                 }
                 let piece = &pieces[seen.piece as usize];
                 let placed = Placed::new(&part.body, piece, &at);
-                let calm = if part.odometer < seen.calm_until { seen.state.calm_step(&placed) } else { None };
+                let calm = if part.odometer < seen.calm_until {
+                    seen.state.calm_step(&placed, seen.stays_applicable)
+                } else {
+                    None
+                };
                 let tracked = match calm {
                     Some(tracked) => tracked,
                     None => {
@@ -217,22 +223,35 @@ impl Part {
 impl Seen {
     fn new(piece: u32) -> Self {
         let never = f64::NEG_INFINITY;
-        Self { piece, state: PairState::NEW, apart_until: never, calm_until: never, ask_calm: never, ask_after: 1.0 }
+        Self {
+            piece,
+            state: PairState::NEW,
+            apart_until: never,
+            calm_until: never,
+            ask_calm: never,
+            stays_applicable: false,
+            ask_after: 1.0,
+        }
     }
 
     /// Asks whether the pair is calm for some ticks at this speed; the longer it has not been, the more rarely.
     fn look_for_calm(&mut self, placed: &Placed<'_>, odometer: f64, moved: f64) {
+        // What was known was said of Near as it was: it may have ceased to be applicable, and be another one now.
+        self.calm_until = f64::NEG_INFINITY;
         if odometer < self.ask_calm {
             return;
         }
         let [least, most] = PACE.map(|pace| pace * placed.a.radius);
-        let way = CALM_TICKS * moved.clamp(least, most);
-        if self.state.is_calm(placed, way) {
-            (self.calm_until, self.ask_after) = (odometer + way, 1.0);
-        } else {
-            (self.ask_calm, self.ask_after) =
-                (odometer + self.ask_after * way, (2.0 * self.ask_after).min(MOST_ASK_AFTER));
+        let pace = moved.clamp(least, most);
+        for way in CALM_TICKS.map(|ticks| ticks * pace) {
+            if self.state.is_calm(placed, way) {
+                (self.calm_until, self.ask_after) = (odometer + way, 1.0);
+                self.stays_applicable = self.state.stays_applicable(placed, way);
+                return;
+            }
         }
+        (self.ask_calm, self.ask_after) =
+            (odometer + self.ask_after * CALM_TICKS[1] * pace, (2.0 * self.ask_after).min(MOST_ASK_AFTER));
     }
 }
 

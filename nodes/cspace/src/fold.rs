@@ -30,6 +30,16 @@ struct Nearest {
     across: BasicContact,
 }
 
+/// Near's C-face and the one across its nearest side.
+pub(crate) struct Fold {
+    /// From the SCP to that side and to the next one of Near's C-face, metres.
+    pub s: f64,
+    pub at_home: f64,
+    /// The C-face across, and how far the point of the side nearest to the SCP is from its other sides, metres.
+    pub across: BasicContact,
+    pub at_away: f64,
+}
+
 /// The largest of some numbers, the one after it, and the place of the largest.
 fn two_largest(numbers: impl Iterator<Item = f64>) -> ([f64; 2], usize) {
     let (mut two, mut at) = ([f64::NEG_INFINITY; 2], 0);
@@ -47,13 +57,19 @@ impl Placed<'_> {
     /// What the disc about the SCP may count for, metres: see above. No neighbour of `near` is better, its sides lie `inside`
     /// metres or more from the SCP, and `x` is inside of its plane.
     pub(crate) fn folded_disc(&self, near: &CFace, inside: f64) -> f64 {
-        let Some(home) = self.nearest_sides(near.contact, DVec3::ZERO, Some(near.normal_w)) else { return inside };
-        let s = -home.beyond[0];
-        let to_side = home.out_w * s - near.normal_w * near.distance;
-        match self.nearest_sides(home.across, to_side, None) {
-            Some(away) if s >= 0.0 => inside.max((-home.beyond[1] - s).min(-away.beyond[1]) - s),
+        match self.fold(near) {
+            Some(fold) if fold.s >= 0.0 => inside.max((fold.at_home - fold.s).min(fold.at_away) - fold.s),
             _ => inside,
         }
+    }
+
+    /// The fold along the side of `near` that its SCP is nearest to; `x` is inside of its plane.
+    pub(crate) fn fold(&self, near: &CFace) -> Option<Fold> {
+        let home = self.nearest_sides(near.contact, DVec3::ZERO, Some(near.normal_w))?;
+        let s = -home.beyond[0];
+        let to_side = home.out_w * s - near.normal_w * near.distance;
+        let away = self.nearest_sides(home.across, to_side, None)?;
+        Some(Fold { s, at_home: -home.beyond[1], across: home.across, at_away: -away.beyond[1] })
     }
 
     /// The sides of an applicable node's C-face that `x + shift` is nearest to; and what lies across the first, if its normal is

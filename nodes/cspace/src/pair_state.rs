@@ -67,7 +67,7 @@ impl PairState {
         self.near
     }
 
-    /// Whether Near surely stays what it is while A moves by no more than `way`, metres: see [`Placed::is_calm`].
+    /// Whether Near is, if it stays applicable, surely what it is while A moves by no more than `way`, metres: see [`Placed::is_calm`].
     pub(crate) fn is_calm(&self, placed: &Placed<'_>, way: f64) -> bool {
         self.seeded
             && self.rival.is_none()
@@ -75,10 +75,15 @@ impl PairState {
             && placed.is_calm(self.near, &self.certificate, way)
     }
 
-    /// What a step says of a pair that is calm; none if Near may not be applicable.
+    /// Whether Near surely stays applicable meanwhile.
+    pub(crate) fn stays_applicable(&self, placed: &Placed<'_>, way: f64) -> bool {
+        placed.stays_applicable(self.near, way)
+    }
+
+    /// What a step says of a pair that is calm; none if Near may not be applicable. `is_known`: it is.
     #[inline]
-    pub(crate) fn calm_step(&self, placed: &Placed<'_>) -> Option<Tracked> {
-        placed.plane_if_applicable(self.near).map(Tracked::quick)
+    pub(crate) fn calm_step(&self, placed: &Placed<'_>, is_known: bool) -> Option<Tracked> {
+        placed.plane_if_applicable(self.near, is_known).map(Tracked::quick)
     }
 
     /// One step: see [`crate::Tracker::step`].
