@@ -275,6 +275,47 @@ fn the_tip_of_a_cut_part_over_a_joint_pushes_straight_up() {
 
 /// Ticks 105 to 107 once gave five times the force: the nearest plane of the part's rear half to the floor's right half is a
 /// joint there, and the way out runs along it.
+/// The part's edge meets the rim of the wall in a place where the hand, deep in another wall, is not: of the pieces that the rim is cut
+/// into, the contact is that of the one which is touched.
+#[test]
+fn an_edge_that_meets_the_rim_of_a_cut_wall_where_the_hand_is_not_touches_the_piece_there() {
+    let walls = |cut: bool| {
+        let mut fixed = vec![
+            cuboid(mm(-30.0, 5.0, -9.0), mm(8.0, 25.0, 0.0)),
+            cuboid(mm(-30.0, -25.0, -14.0), mm(30.0, 25.0, -9.0)),
+        ];
+        if cut {
+            fixed.insert(0, cuboid(mm(8.0, -25.0, -9.0), mm(30.0, 0.0, 0.0)));
+            fixed.insert(1, cuboid(mm(8.0, 0.0, -9.0), mm(30.0, 25.0, 0.0)));
+        } else {
+            fixed.insert(0, cuboid(mm(8.0, -25.0, -9.0), mm(30.0, 25.0, 0.0)));
+        }
+        world(block(mm(16.0, 10.0, 24.0)), fixed)
+    };
+    for law in [LawKind::Paper, LawKind::Pstar] {
+        let [whole, cut] = [false, true].map(|cut| {
+            let mut r = Renderer::new(walls(cut));
+            let (from, to) = (DVec3::new(2.68e-5, 3.168e-4, 2.9628e-3), DVec3::new(4.46e-5, 3.056e-4, 2.9619e-3));
+            let (tilted, leaning) = (DVec3::new(9.42e-3, 1.93e-2, -3.54e-2), DVec3::new(8.4e-3, 1.795e-2, -3.635e-2));
+            let mut render =
+                |at: DVec3, turn: DVec3| r.render(&Pose::new(at, DQuat::from_scaled_axis(turn)), &gains(law), 1e-3);
+            for i in 0..400 {
+                let s = f64::from(i) / 400.0;
+                render(from + DVec3::Z * (0.02 * (1.0 - s)), tilted * s.powi(8));
+            }
+            let on = |i: i32| f64::from(i) / 40.0;
+            (0..=40).map(|i| render(from.lerp(to, on(i)), tilted.lerp(leaning, on(i)))).collect::<Vec<_>>()
+        });
+        let mut touched = 0;
+        for (w, c) in whole.iter().zip(&cut) {
+            assert!((w.wrench.force - c.wrench.force).length() < 1e-9, "{law:?} {:?} {:?}", w.wrench, c.wrench);
+            assert!((w.wrench.torque - c.wrench.torque).length() < 1e-9, "{law:?} {:?} {:?}", w.wrench, c.wrench);
+            touched += usize::from(c.formation.points().iter().any(|p| p.contact.type_letter() == 'C'));
+        }
+        assert!(touched > 10, "{touched}");
+    }
+}
+
 #[test]
 fn cut_box_on_a_cut_floor_beside_a_wall_feels_like_the_whole_ones() {
     let piece =

@@ -136,17 +136,28 @@ impl Scp {
         if !pairs.iter().all(&mut is_apart) || !self.takes_place(solids, hip, &there) {
             return None;
         }
-        // It does not tell the depth, which is that where the hand is.
-        let is_felt_there = |t: &Touch| {
-            let plane = CFace { distance: t.plane.distance + t.plane.normal_w.dot(shift), ..t.plane };
-            let is_deepest = self.touches.iter().all(|u| u.felt_there || u.plane.distance > t.plane.distance);
-            !is_deepest && Pair::new(solids, t.part, t.piece, &there).is_felt(&plane, Covered::Felt)
-        };
-        if !self.touches.iter().filter(|t| t.felt_there).all(is_felt_there) {
+        if !self.is_felt_there(solids, hip, &there) {
             return None;
         }
         self.held = Some(held);
         Some(depth)
+    }
+
+    /// Whether the planes that are felt where the SCP is, and not where the hand is, are so still, and their own pieces touch there:
+    /// where the part has passed on to the next piece of a wall, that one's contacts are wanted. They do not tell the depth, which is
+    /// that where the hand is.
+    fn is_felt_there(&mut self, solids: &Solids, hip: &Pose, there: &Placed) -> bool {
+        let Self { touches, lasting, pieces, scp_way, .. } = self;
+        let known = (scp_way.go(there.x, hip.rotation), scp_way.lever);
+        touches.iter().filter(|t| t.felt_there).all(|t| {
+            let pair = Pair::new(solids, t.part, t.piece, there);
+            let plane = CFace { distance: 0.0, ..t.plane };
+            let lasting = &mut lasting[pair.part * *pieces + pair.piece];
+            let is_deepest = touches.iter().all(|u| u.felt_there || u.plane.distance > t.plane.distance);
+            !is_deepest
+                && lasting.faces(plane.contact, FREED, known, || (pair, plane))
+                && pair.is_felt(&plane, Covered::Felt)
+        })
     }
 
     /// The depth if the planes that told it at the last tick still do: each pair with a plane that is felt has that plane, or the one

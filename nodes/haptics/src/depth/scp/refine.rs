@@ -1,9 +1,9 @@
 //! Where planes near the hand do not tell the SCP: the search around, and what is felt where it leads nowhere.
 
-use super::{FAR, FREED, Scp, Touch, row};
+use super::{FAR, FREED, Scp, Touch, row, tie_of};
 use crate::depth::compromise::Compromise;
-use crate::solid::{Covered, Pair, Placed, Sensed, Solids};
-use cspace::CFace;
+use crate::solid::{Covered, OnePlane, Pair, Placed, Sensed, Solids, facing_point};
+use cspace::{BasicContact, CFace};
 use spatial::{DVec3, Pose};
 
 /// Rounds in which planes are taken anew at the SCP found.
@@ -48,7 +48,9 @@ impl Scp {
         self.shift = self.touches.iter().map(|t| t.plane.normal_w * t.push).sum();
         let follows = last.is_none_or(|p| !self.wedged && self.shift.distance(p) <= near);
         let found = !self.touches.is_empty() && (least <= near || follows);
-        if !found {
+        if found {
+            self.take_those_touched(solids, hip);
+        } else {
             self.take_nearest();
             self.touch_unfelt(solids, &Placed::new(hip));
             self.rows.clear();
@@ -56,6 +58,39 @@ impl Scp {
             self.give_way(FAR * self.depth_of_touches());
         }
         found
+    }
+
+    /// Of pieces whose edges go on in each other the plane of any may hold the SCP: takes the piece that the part touches there.
+    fn take_those_touched(&mut self, solids: &Solids, hip: &Pose) {
+        let Self { touches, around, shift, .. } = self;
+        let there = Pose::new(hip.translation + *shift, hip.rotation);
+        let placed = Placed::new(&there);
+        let is_touched = |part: u32, piece: u32, plane: &CFace| {
+            facing_point(&Pair::new(solids, part, piece, &placed), plane, FREED).is_some()
+        };
+        let mut looked = false;
+        for i in 0..touches.len() {
+            let t = &touches[i];
+            let is_of_edges = matches!(t.plane.contact, BasicContact::TypeC { .. });
+            if !(t.push > 0.0 && is_of_edges) || is_touched(t.part, t.piece, &t.plane) {
+                continue;
+            }
+            if !std::mem::replace(&mut looked, true) {
+                around.step(&there);
+            }
+            let other = around.pairs.iter().find(|s| {
+                let plane = CFace { distance: s.near.distance - s.near.normal_w.dot(*shift), ..s.near };
+                OnePlane::EXACT.holds_for(&t.plane, &plane)
+                    && !touches.iter().any(|u| (u.part, u.piece) == (s.part, s.piece))
+                    && is_touched(s.part, s.piece, &CFace { distance: 0.0, ..plane })
+                    && Pair::of(solids, s, &placed).is_felt(&s.near, Covered::Unfelt)
+            });
+            if let Some(s) = other {
+                let t = &mut touches[i];
+                (t.part, t.piece, t.plane.contact) = (s.part, s.piece, s.near.contact);
+                (t.tie, t.found_there) = (tie_of(solids, s.part), true);
+            }
+        }
     }
 
     /// Takes the planes nearest to the hand.
