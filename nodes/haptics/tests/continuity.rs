@@ -76,6 +76,46 @@ fn wrench_is_continuous_across_single_and_multiple_contacts() {
     }
 }
 
+/// A box that overhangs the border of a plate and tips there a little: while a corner or an edge of it goes over the border, the proxy
+/// follows the hand as it does before and after, and is not held at the border by the planes on both sides of it.
+#[test]
+fn a_corner_that_goes_over_a_rim_is_not_held_there() {
+    let gains = Gains { law: LawKind::Proxy, rotation_stiffness: 0.1, ..Gains::default() };
+    let length = |step: DVec3, turn: DVec3, stiffness: [f64; 2]| {
+        (stiffness[0] * step.length_squared() + stiffness[1] * turn.length_squared()).sqrt()
+    };
+    let mut felt = 0;
+    for seed in 0..60 {
+        let mut rng = rng(seed);
+        let mut any = |low: f64, high: f64| rng.random_range(low..high);
+        let half = DVec3::new(any(4.0, 12.0), any(4.0, 12.0), any(3.0, 8.0)) * 1e-3;
+        let (yaw, [tip, roll], press) = (any(-0.6, 0.6), [any(-0.04, 0.04), any(-0.04, 0.04)], any(2e-4, 6e-4));
+        let w = world(block(2.0 * half), vec![cuboid(mm(-40.0, -30.0, -20.0), mm(0.0, 30.0, 0.0))]);
+        let mut r = Renderer::new(w);
+        let mut last = None::<(Pose, spatial::Wrench)>;
+        let (n, out) = (6000, half.x * yaw.cos() + half.y * yaw.sin().abs());
+        for i in 0..n {
+            let s = f64::from(i) / f64::from(n);
+            let turn = DQuat::from_rotation_y(tip * (2.0 * s).sin()) * DQuat::from_rotation_x(roll * (3.0 * s).cos());
+            let rotation = (turn * DQuat::from_rotation_z(yaw)).normalize();
+            let hand =
+                Pose::new(DVec3::new(-out + 0.9 * s * out, 2e-3 * s, half.z - press * (10.0 * s).min(1.0)), rotation);
+            let wrench = r.render(&hand, &gains, 1e-3).wrench;
+            if let Some((before, felt_before)) = last.replace((hand, wrench)) {
+                let (step, turn) = (hand.translation - before.translation, before.rotation_to(&hand));
+                let change = wrench - felt_before;
+                let moved = length(step, turn, [gains.stiffness, gains.rotation_stiffness]);
+                let answer =
+                    length(change.force, change.torque, [1.0 / gains.stiffness, 1.0 / gains.rotation_stiffness]);
+                let at = format!("seed {seed}, tick {i}");
+                assert!(answer <= 1.5 * moved, "{at}: {change:?} while the hand moved by {step} and {turn}");
+                felt += u32::from(wrench.force.length() > 0.05);
+            }
+        }
+    }
+    assert!(felt > 100_000, "{felt}");
+}
+
 /// Parts of every kind rocking on a plate and over its border on one of their faces, tilted by up to 0.05 rad, in steps of
 /// about 1e-5 m and rad.
 fn rocking(seed: u64) -> (std::sync::Arc<cspace::World>, Vec<Pose>) {

@@ -28,8 +28,6 @@ type Other = Option<u32>;
 
 /// Normals that differ by less, radians, bound one motion.
 const ONE_DIRECTION: f64 = 1e-4;
-/// Normals that differ by more, radians, are those of different planes of contact.
-const OTHER_PLANE: f64 = 0.05;
 /// Most pairs of faces clipped for one contact.
 const MAX_PAIRS: usize = 24;
 
@@ -250,19 +248,20 @@ fn push(p: RegionPoint, (same, lead): (f64, Option<DVec3>), [first, ring]: [usiz
     }
 }
 
-/// Whether of two contacts at one place `p` is not to be kept. Seen along their own normals both stay if they bound the motion in almost
-/// the same direction; else the body is free on either's side, and the one nearer to the lead stays, as `o`: the other belongs to
-/// the region of another plane.
+/// Whether of two contacts at one place `p` is not to be kept. Seen along their own normals they may bound the motion in different
+/// directions: then the body is free on either's side, and the one nearer to the lead stays, as `o`; the other belongs to the region
+/// of another plane. Both together would hold a corner that goes over a rim there, and let go of it at once.
 fn stands_for(o: &mut RegionPoint, p: &RegionPoint, same: f64, lead: Option<DVec3>) -> bool {
     if o.point_w.distance_squared(p.point_w) > same * same {
         return false;
     }
-    let Some(lead) = lead else { return true };
-    let apart = o.normal_w.distance_squared(p.normal_w);
-    if apart > OTHER_PLANE * OTHER_PLANE && p.normal_w.distance_squared(lead) < o.normal_w.distance_squared(lead) {
+    if let Some(lead) = lead
+        && o.normal_w.distance_squared(p.normal_w) > ONE_DIRECTION * ONE_DIRECTION
+        && p.normal_w.distance_squared(lead) < o.normal_w.distance_squared(lead)
+    {
         *o = *p;
     }
-    !(ONE_DIRECTION * ONE_DIRECTION..=OTHER_PLANE * OTHER_PLANE).contains(&apart)
+    true
 }
 
 /// How much of a contact Near's own is, 0 to 1, at `point_w` on B.
