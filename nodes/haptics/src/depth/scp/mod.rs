@@ -151,6 +151,11 @@ impl Scp {
 
     /// Finds the SCP and the planes that hold it, in `touches`; returns the depth as [`Scp::depth`] does.
     pub fn find(&mut self, solids: &Solids, pairs: &[Sensed], hip: &Pose, placed: &Placed) -> f64 {
+        if self.held.is_none() && pairs.iter().all(|s| s.near.distance >= 0.0) {
+            self.touches.clear();
+            (self.last, self.wedged) = (None, false);
+            return 0.0;
+        }
         self.gone = self.way.go(hip.translation, hip.rotation);
         let depth = match self.hold(solids, pairs, hip, placed) {
             Some(depth) => depth,
