@@ -321,9 +321,10 @@ impl Proxy {
             self.pose = safe.pose.interpolate(&ahead, s);
             self.look(solids);
             self.stretch = self.stretch_to(hip);
-            if self.is_no_worse(safe, metric) {
+            if s > 0.0 && self.is_no_worse(safe, metric) {
                 return;
             }
         }
+        self.steadying.led_nowhere();
     }
 }

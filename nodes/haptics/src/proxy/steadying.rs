@@ -67,7 +67,7 @@ impl Steadying {
             // A first round that is mended by the second is none: again and again it overshoots.
             self.overshot |= over && self.over;
             self.over = over;
-            if self.mu > 0.0 || self.overshot && self.ticks >= TICKS {
+            if self.mu > 0.0 || (self.overshot || over) && self.ticks >= TICKS {
                 self.mu = curvature.max(KEPT * self.mu);
             }
             if self.mu < 0.5 {
@@ -75,6 +75,11 @@ impl Steadying {
             }
         }
         self.last = active[0].map(|_| (step.dtheta, scale, active));
+    }
+
+    /// The tick's rounds led nowhere: they were all taken back.
+    pub fn led_nowhere(&mut self) {
+        self.overshot = true;
     }
 
     /// Forgets all.
