@@ -41,6 +41,8 @@ pub(crate) struct DepthLaw {
 const BLUNT: f32 = 0.005;
 /// Of the size that a tie tells.
 const PER_TIE: f64 = 1.0 / TIED;
+/// Planes that differ by less, in parts of the tie, are equally deep.
+const ROUNDING: f64 = 1e-3;
 /// Most contact points held at once.
 const ROOM: usize = 256;
 
@@ -124,20 +126,25 @@ impl DepthLaw {
     ) {
         // One state for all pairs: the pieces of one obstacle must switch together.
         let was_multiple = std::mem::take(&mut self.multiple);
-        for t in &mut self.scp.touches {
+        for i in 0..self.scp.touches.len() {
+            let t = &mut self.scp.touches[i];
             if t.plane.distance >= 0.0 {
                 continue;
             }
-            let pair = Pair::new(solids, t.part, t.piece, placed);
             t.tie *= if was_multiple { 1.5 } else { 1.0 };
-            let within = if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
+            // Its nearest contact may be the end of a cut, which only looks like a corner.
+            let is_seamless = solids.is_seamless(t.part as usize, t.piece as usize);
+            let may_be_cut = !is_seamless && is_above_its_equals(&self.scp.touches, i);
+            let t = &mut self.scp.touches[i];
+            let pair = Pair::new(solids, t.part, t.piece, placed);
+            let within = within(t, law, gains);
             let (limit, plane) = (t.left + within, t.plane_there());
             t.first = self.points.len();
             // Along Near's normal no contact can be deeper than Near.
-            let scope = Scope { reach: limit, near_felt: true, wide: law == LawKind::Blended, along_near: true };
+            let scope = Scope { reach: limit, near_felt: !may_be_cut, wide: law == LawKind::Blended, along_near: true };
             let known = &mut self.known[pair.part * self.pieces + pair.piece];
-            let is_clipped =
-                !tied_contacts(&pair, &plane, within, &scope, (known, gone, self.way.lever), &mut self.points);
+            let is_clipped = may_be_cut
+                || !tied_contacts(&pair, &plane, within, &scope, (known, gone, self.way.lever), &mut self.points);
             if is_clipped {
                 self.clipper.region(&pair, &plane, &scope, &mut self.points);
             }
@@ -157,19 +164,35 @@ impl DepthLaw {
             t.beside = [t.end, self.points.len()];
         }
         self.stand_in(solids, placed);
-        for t in &self.scp.touches {
-            let points = &self.points[t.first..t.end];
-            if points.is_empty() {
+        let Self { scp, points, places, .. } = self;
+        for i in 0..scp.touches.len() {
+            // Pieces that are one solid make one contact of one kind, and the deepest tells what takes place.
+            let (deepest, pieces) = deepest_of_equals(&scp.touches, i);
+            let level = deepest + within(&scp.touches[i], law, gains);
+            scp.touches[i].level = level;
+            let t = &scp.touches[i];
+            if t.first == t.end {
                 continue;
             }
             // Between facets that are one face nothing takes place.
-            let counts = |p: &&RegionPoint| p.sharpness >= BLUNT || p.contact == t.plane.contact;
-            self.places.clear();
-            self.places.extend(points.iter().filter(counts).map(|p| p.point_w));
-            let kind = FormationKind::of(&self.places, t.plane.normal_w, t.plane.contact);
+            let here = |u: &Touch| {
+                let own = u.plane.contact;
+                let counts = move |p: &&RegionPoint| p.gap <= level && (p.sharpness >= BLUNT || p.contact == own);
+                points[u.first..u.end].iter().filter(counts)
+            };
+            places.clear();
+            if pieces == 1 {
+                places.extend(here(t).map(|p| p.point_w));
+            } else {
+                places.extend(scp.touches.iter().filter(|u| is_equal(t, u)).flat_map(here).map(|p| p.point_w));
+            }
+            if places.is_empty() {
+                continue;
+            }
+            let kind = FormationKind::of(places, t.plane.normal_w, t.plane.contact);
             self.multiple |= kind >= FormationKind::EdgeFace;
             result.formation.kind = result.formation.kind.max(kind);
-            for p in points.iter().filter(counts) {
+            for p in here(t) {
                 let kept = result.formation.push(ContactPoint {
                     part_a: t.part,
                     piece_b: t.piece,
@@ -213,7 +236,7 @@ impl DepthLaw {
         self.places.clear();
         self.weights.clear();
         self.sharpness.clear();
-        let fade = if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie };
+        let fade = within(&t, law, gains);
         let Self { scp, points, places, weights, sharpness, .. } = self;
         let mut add = |p: &RegionPoint| {
             if places.len() < ROOM {
@@ -227,10 +250,10 @@ impl DepthLaw {
                 }
             }
         };
-        let one_region = OnePlane::REGION.of_size(t.tie * PER_TIE);
+        let one_region = one_region(&t);
         let is_equal = |u: &Touch| one_region.holds_for(&t.plane, &u.plane);
         for (j, u) in scp.touches.iter().enumerate().filter(|(j, u)| *j == i || is_equal(u)) {
-            points[u.first..u.end].iter().for_each(&mut add);
+            points[u.first..u.end].iter().filter(|p| p.gap <= t.level).for_each(&mut add);
             if i == j {
                 points[u.beside[0]..u.beside[1]].iter().for_each(&mut add);
             }
@@ -252,7 +275,34 @@ impl DepthLaw {
     }
 }
 
+/// How far above the deepest contact others take part, metres.
+#[inline]
+fn within(t: &Touch, law: LawKind, gains: &Gains) -> f64 {
+    if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie }
+}
+
+/// The signed distance, metres, of the deepest plane that is one with this and has contacts, and how many are.
+#[inline]
+fn deepest_of_equals(touches: &[Touch], i: usize) -> (f64, usize) {
+    let t = &touches[i];
+    let one_region = one_region(t);
+    let equals = touches.iter().filter(|u| u.first < u.end && one_region.holds_for(&t.plane, &u.plane));
+    equals.fold((f64::INFINITY, 0), |(deepest, count), u| (u.left.min(deepest), count + 1))
+}
+
+/// Whether there is a deeper plane that is one with this.
+fn is_above_its_equals(touches: &[Touch], i: usize) -> bool {
+    let t = &touches[i];
+    let one_region = one_region(t);
+    touches.iter().any(|u| u.left < t.left - ROUNDING * t.tie && one_region.holds_for(&t.plane, &u.plane))
+}
+
 /// Whether two planes are one constraint.
 fn is_equal(t: &Touch, u: &Touch) -> bool {
-    OnePlane::REGION.of_size(t.tie * PER_TIE).holds_for(&t.plane, &u.plane)
+    one_region(t).holds_for(&t.plane, &u.plane)
+}
+
+#[inline]
+fn one_region(t: &Touch) -> OnePlane {
+    OnePlane::REGION.of_size(t.tie * PER_TIE)
 }

@@ -345,19 +345,23 @@ impl View {
         let mut dropped = 0;
         std::mem::swap(&mut self.touching, &mut self.touched);
         self.touching.fill(false);
-        for pair in &self.pairs {
-            let index = pair.part as usize * self.pieces + pair.piece as usize;
-            let limit = if self.touched[index] { LEAVING } else { TOUCHING };
-            let points = &self.points[pair.first..pair.end];
-            self.places.clear();
-            self.places.extend(points.iter().filter(|p| p.gap <= limit).map(|p| p.point_w));
-            self.touching[index] |= !self.places.is_empty();
-            let Some(deepest) = points.iter().min_by(|p, q| p.gap.total_cmp(&q.gap)).filter(|p| p.gap <= limit) else {
-                continue;
-            };
-            let kind = FormationKind::of(&self.places, deepest.normal_w, deepest.contact);
+        let Self { pairs, points, places, pieces, touching, touched, .. } = self;
+        let index = |pair: &InReach| pair.part as usize * *pieces + pair.piece as usize;
+        let limit = |pair: &InReach| if touched[index(pair)] { LEAVING } else { TOUCHING };
+        let here = |pair: &InReach| {
+            let limit = limit(pair);
+            points[pair.first..pair.end].iter().filter(move |p| p.gap <= limit)
+        };
+        for pair in &*pairs {
+            let Some(deepest) = here(pair).min_by(|p, q| p.gap.total_cmp(&q.gap)) else { continue };
+            touching[index(pair)] = true;
+            // Pieces that are one solid make one contact there.
+            let is_with = |q: &&InReach| std::ptr::eq(*q, pair) || OnePlane::WALL.holds_for(&q.plane, &pair.plane);
+            places.clear();
+            places.extend(pairs.iter().filter(is_with).flat_map(here).map(|p| p.point_w));
+            let kind = FormationKind::of(places, deepest.normal_w, deepest.contact);
             formation.kind = formation.kind.max(kind);
-            for p in points.iter().filter(|p| p.gap <= limit) {
+            for p in here(pair) {
                 let kept = formation.push(ContactPoint {
                     part_a: pair.part,
                     piece_b: pair.piece,

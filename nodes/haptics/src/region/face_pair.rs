@@ -229,10 +229,10 @@ impl<'a> FacePair<'a> {
             return None;
         }
         let foot = point - self.sight * (height / self.slope);
-        // Weighted by their depths, the ends of a cut in A's face would count as contacts; along their own normals, which lean where an
-        // edge of B passes over the cut, they would hold what the whole face lets go.
-        let shows_cuts = self.scope.along_near && !self.scope.wide;
-        if !shows_cuts && self.is_cut_in_a(corner, point) || self.is_cut_in_b(corner, foot) {
+        // The ends of a cut are no corners of the whole face: weighted by their depths they would count as contacts, tied with a corner
+        // they would be told before the whole edge ties; along their own normals, which lean where an edge of B passes over the cut,
+        // they would hold what the whole face lets go.
+        if self.is_cut_in_a(corner, point) || self.is_cut_in_b(corner, foot) {
             return None;
         }
         let contact = self.basic_contact(corner);

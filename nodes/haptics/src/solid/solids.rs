@@ -16,6 +16,8 @@ pub(crate) struct Solids {
     pub fixed: Seams,
     /// Whether either has an obtuse hollow joint anywhere.
     pub is_hollow: bool,
+    /// Radius of a ball that holds A, metres: whatever pieces it is cut into.
+    pub size: f64,
     /// Of the parts and of the pieces.
     sharp_moving: Vec<Sharpness>,
     sharp_fixed: Vec<Sharpness>,
@@ -29,7 +31,8 @@ impl Solids {
         let is_hollow = moving.has_hollow() || fixed.has_hollow();
         let sharp_moving = world.moving.iter().map(|p| Sharpness::of(p)).collect();
         let sharp_fixed = world.fixed.iter().map(|p| Sharpness::of(&p.polyhedron)).collect();
-        Self { world, moving, fixed, is_hollow, sharp_moving, sharp_fixed }
+        let size = half_extent(&world.moving);
+        Self { world, moving, fixed, is_hollow, size, sharp_moving, sharp_fixed }
     }
 
     pub fn part(&self, part: usize) -> &Polyhedron {
@@ -116,6 +119,14 @@ impl Solids {
         };
         of_a.iter().filter_map(with_a).chain(of_b.iter().filter_map(with_b))
     }
+}
+
+/// Half the diagonal of the box about the bodies, metres.
+fn half_extent(bodies: &[Arc<Polyhedron>]) -> f64 {
+    let corners = || bodies.iter().flat_map(|p| p.corner_ids().map(|v| p.vertex(v)));
+    let low = corners().fold(DVec3::INFINITY, DVec3::min);
+    let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
+    0.5 * low.distance(high)
 }
 
 fn flush(seams: &Seams, piece: usize, face: FaceId, other: usize) -> Option<FaceId> {

@@ -127,7 +127,7 @@ impl Scp {
         let there = placed.shifted(shift);
         let mut is_apart = |s: &Sensed| {
             let left = s.near.distance + s.near.normal_w.dot(shift);
-            left > 4.0 * tie_of(solids, s.part)
+            left > 4.0 * tie_of(solids)
                 || self.touches.iter().any(|t| is_of(t, s))
                 || left < -FREED
                     && !self.is_felt(solids, s, placed, Covered::Unfelt)
@@ -228,7 +228,7 @@ impl Scp {
             } else {
                 t.plane = pair().applicable_plane(t.plane.contact)?;
             }
-            (t.first, t.end, t.beside, t.tie) = (0, 0, [0; 2], tie_of(solids, t.part));
+            (t.first, t.end, t.beside, t.tie) = (0, 0, [0; 2], tie_of(solids));
             self.rows.push(row(&t.plane));
         }
         Some(())

@@ -39,6 +39,8 @@ pub(crate) struct Touch {
     pub tie: f64,
     /// Its signed distance where its contacts are looked for, metres.
     pub left: f64,
+    /// Contacts of this plane, and of those that are one with it, take place up to this gap, metres.
+    pub level: f64,
     /// Share of the force that the plane carries: shift = sum push_i normal_i, metres.
     pub push: f64,
     /// It was found where the SCP is.
@@ -339,8 +341,9 @@ impl Scp {
             first: 0,
             end: 0,
             beside: [0; 2],
-            tie: tie_of(solids, part),
+            tie: tie_of(solids),
             left: 0.0,
+            level: 0.0,
             push: 0.0,
             found_there: false,
             felt_there: false,
@@ -353,7 +356,8 @@ fn row(plane: &CFace) -> Row<3> {
     Row { normal: plane.normal_w.to_array(), offset: -plane.distance, equality: false }
 }
 
-/// Contacts of the part that lie this close together take place together, metres.
-fn tie_of(solids: &Solids, part: u32) -> f64 {
-    2.0 * solids.part(part as usize).size() * TIED
+/// Contacts of A that lie this close together take place together, metres: the same for all its parts, or one that is cut would
+/// take on a contact in another tick than the whole.
+fn tie_of(solids: &Solids) -> f64 {
+    2.0 * solids.size * TIED
 }

@@ -88,7 +88,7 @@ impl Scp {
             if let Some(s) = other {
                 let t = &mut touches[i];
                 (t.part, t.piece, t.plane.contact) = (s.part, s.piece, s.near.contact);
-                (t.tie, t.found_there) = (tie_of(solids, s.part), true);
+                (t.tie, t.found_there) = (tie_of(solids), true);
             }
         }
     }

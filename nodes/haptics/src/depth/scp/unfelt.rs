@@ -88,8 +88,7 @@ impl Scp {
         let shift = DVec3::from_array(self.projection.z);
         for k in 0..self.unfelt.len() {
             let Sensed { part, piece, near } = self.unfelt[k].pair;
-            let touches =
-                |c: &CFace| (-FREED..=4.0 * tie_of(solids, part)).contains(&(c.distance + c.normal_w.dot(shift)));
+            let touches = |c: &CFace| (-FREED..=4.0 * tie_of(solids)).contains(&(c.distance + c.normal_w.dot(shift)));
             if touches(&near) {
                 let plane = self.unfelt[k].felt_plane(solids, placed, &mut self.hints);
                 if let Some(plane) = plane.filter(touches) {
@@ -115,6 +114,6 @@ impl Scp {
 /// only touches that one is a contact of the same wall.
 pub(super) fn is_parted(pair: &Pair<'_>, touches: &[Touch], projection: &Projection<3>) -> bool {
     let mut holding = projection.active().map(|(i, _)| touches[i].plane.normal_w);
-    let apart = 4.0 * tie_of(pair.solids, pair.part as u32);
+    let apart = 4.0 * tie_of(pair.solids);
     pair.a_face_parts(FREED) || holding.any(|n| pair.is_parted_along(n, -apart))
 }
