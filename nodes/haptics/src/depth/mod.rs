@@ -1,6 +1,7 @@
 //! The laws that read the wrench off the hand's own pose: `paper`, `pstar` and `blended`.
 
 mod compromise;
+mod one_region;
 mod paper_torque;
 mod reduced_hull;
 mod scp;
@@ -8,10 +9,11 @@ mod shares;
 
 pub(crate) use scp::SCP_MARGIN;
 
-use crate::region::{Clipper, Gone, Known, RegionPoint, Scope, TIED, Way, push_within, tied_contacts};
-use crate::solid::{OnePlane, Pair, Placed, Sensed, Solids};
+use crate::region::{Clipper, Gone, Known, RegionPoint, Scope, Way, push_within, tied_contacts};
+use crate::solid::{Pair, Placed, Sensed, Solids};
 use crate::{ContactPoint, FormationKind, Gains, LawKind, LawOutput};
 use cspace::{BasicContact, contact_point_turned};
+use one_region::{deepest_of_equals, is_above_its_equals, is_equal, one_region};
 use paper_torque::torque;
 use reduced_hull::nearest_point;
 use scp::{Scp, Touch};
@@ -39,10 +41,6 @@ pub(crate) struct DepthLaw {
 
 /// Blunter contacts are none to tell of.
 const BLUNT: f32 = 0.005;
-/// Of the size that a tie tells.
-const PER_TIE: f64 = 1.0 / TIED;
-/// Planes that differ by less, in parts of the tie, are equally deep.
-const ROUNDING: f64 = 1e-3;
 /// Most contact points held at once.
 const ROOM: usize = 256;
 
@@ -279,30 +277,4 @@ impl DepthLaw {
 #[inline]
 fn within(t: &Touch, law: LawKind, gains: &Gains) -> f64 {
     if law == LawKind::Blended { gains.blend_depth.max(t.tie) } else { t.tie }
-}
-
-/// The signed distance, metres, of the deepest plane that is one with this and has contacts, and how many are.
-#[inline]
-fn deepest_of_equals(touches: &[Touch], i: usize) -> (f64, usize) {
-    let t = &touches[i];
-    let one_region = one_region(t);
-    let equals = touches.iter().filter(|u| u.first < u.end && one_region.holds_for(&t.plane, &u.plane));
-    equals.fold((f64::INFINITY, 0), |(deepest, count), u| (u.left.min(deepest), count + 1))
-}
-
-/// Whether there is a deeper plane that is one with this.
-fn is_above_its_equals(touches: &[Touch], i: usize) -> bool {
-    let t = &touches[i];
-    let one_region = one_region(t);
-    touches.iter().any(|u| u.left < t.left - ROUNDING * t.tie && one_region.holds_for(&t.plane, &u.plane))
-}
-
-/// Whether two planes are one constraint.
-fn is_equal(t: &Touch, u: &Touch) -> bool {
-    one_region(t).holds_for(&t.plane, &u.plane)
-}
-
-#[inline]
-fn one_region(t: &Touch) -> OnePlane {
-    OnePlane::REGION.of_size(t.tie * PER_TIE)
 }
