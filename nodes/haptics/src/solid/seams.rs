@@ -357,10 +357,15 @@ impl Seams {
         stretches.iter().filter(is_within).all(|s| self.supports(s.other, point, normal))
     }
 
+    /// The piece, and how far along the normal it may reach if the plane through the point supports it, metres.
+    fn piece_below(&self, piece: u32, point: DVec3, normal: DVec3) -> (&Polyhedron, f64) {
+        let q = &self.pieces[piece as usize];
+        (q, normal.dot(point) + FLAT * 2.0 * q.size() + self.level)
+    }
+
     /// Whether the plane through `point` with the outward `normal` has no more of the piece beyond it than a flat seam lets out.
     fn supports(&self, piece: u32, point: DVec3, normal: DVec3) -> bool {
-        let q = &self.pieces[piece as usize];
-        let highest = normal.dot(point) + FLAT * 2.0 * q.size() + self.level;
+        let (q, highest) = self.piece_below(piece, point, normal);
         q.corner_ids().all(|v| normal.dot(q.vertex(v)) <= highest)
     }
 }

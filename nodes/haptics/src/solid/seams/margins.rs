@@ -1,6 +1,6 @@
 //! By how much a contact is one of the uncut solid, or is not: what is found of it holds as long as it moves by less.
 
-use super::{FLAT, Seams};
+use super::Seams;
 use cspace::{EdgeId, FaceId, VertexId};
 use spatial::DVec3;
 
@@ -66,8 +66,7 @@ impl Seams {
 
     /// Whether the plane supports the piece: see [`Seams::supports`]. Along the plane the point may be anywhere.
     fn margin_of(&self, piece: u32, point: DVec3, normal: DVec3) -> Margin {
-        let q = &self.pieces[piece as usize];
-        let highest = normal.dot(point) + FLAT * 2.0 * q.size() + self.level;
+        let (q, highest) = self.piece_below(piece, point, normal);
         let (mut least, mut farthest) = (f64::INFINITY, 0.0_f64);
         for v in q.corner_ids().map(|v| q.vertex(v)) {
             least = least.min(highest - normal.dot(v));
